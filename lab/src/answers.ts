@@ -32,6 +32,8 @@ export interface Complete {
   lights: JsonObject[];
   materials: JsonObject[];
   camera: JsonObject;
+  /** Rows of the view transformation, of that of all objects, of their product. */
+  matrices?: { view: number[][]; objects: number[][]; product: number[][] };
   warnings: string[];
 }
 
@@ -63,6 +65,8 @@ export interface Plane {
 export interface Recording {
   steps: number;
   groups: { name: string; count: number }[];
+  /** The recording ended at its limit: there are more steps. */
+  more?: boolean;
   seconds: number;
 }
 

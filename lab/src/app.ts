@@ -51,7 +51,7 @@ export class App {
 
   /** The cross in the picture, which Enter inspects. */
   cross: [number, number] | null = null;
-  /** A facet or surface that was chosen in a table, list or tree. */
+  /** The facet that was chosen in a table, list, tree or drawing. */
   chosen: { facet: number } | null = null;
   isDragging = false;
   isRecording = false;
@@ -244,6 +244,7 @@ export class App {
   go(situation: Situation, history: History) {
     const before = this.situation;
     this.situation = situation;
+    if (!equal(before.state["models"], situation.state["models"])) this.chosen = null;
     if (!equal(before.state, situation.state)) {
       this.playback.prediction = null;
       this.exerciseResult = null;
@@ -531,6 +532,7 @@ export class App {
         this.plane = { key: planeKey, value: { bytes: planes[0], width, height } };
       }
       if (step !== null) this.emit("step");
+      this.wantOverview();
       this.playback.arrived(this.step.value);
     }, true);
   }
@@ -549,13 +551,29 @@ export class App {
     if (pixel && layout === "full" && compare !== "none") {
       this.answer("explainB", { want: "explain", state: this.stateB, pixel });
     }
-    if (second !== "off") this.answer("overview", { want: "overview", state, second: isObject(second) ? second : null });
+    if (second !== "off") {
+      this.answer("info", { want: "info", state });
+      this.wantOverview();
+    }
     if (page === "shading" && layout === "full") {
       for (const shading of ["flat", "gouraud", "phong"]) {
         const own = put(put(put(state, "settings.shading", shading), "settings.width", 240), "settings.height", 180);
         this.answer(`shading ${shading}`, { want: "picture", state: own });
       }
     }
+  }
+
+  /** Asks for the scene from outside, with the rays of the pixel and the plane of a step. */
+  wantOverview() {
+    const { second, pixel } = this.lab;
+    if (second === "off") return;
+    const step = this.hasSteps && this.stepCount ? this.step?.value : undefined;
+    const number = step?.fields["step"] === "tree-node" ? (step.at ?? null) : null;
+    const request: JsonObject = { want: "overview", state: this.state, second: isObject(second) ? second : null };
+    if (pixel) request["pixel"] = pixel;
+    if (number !== null) request["number"] = number;
+    // The steps are kept where they were recorded.
+    this.answer("overview", request, number !== null);
   }
 
   /** The answer to a request about the present state, if it is here. */
@@ -599,7 +617,7 @@ export class App {
       (answer) => {
         // An older answer is shown on the way, as while something is dragged.
         const isNewest = this.wanted.get(name) === key;
-        if (!isNewest && name !== "picture" && name !== "pictureB") return;
+        if (!isNewest && !["picture", "pictureB", "overview"].includes(name)) return;
         take(answer);
         this.silence(name);
         this.changed();

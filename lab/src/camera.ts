@@ -62,3 +62,37 @@ export function unproject(eye: Eye, x: number, y: number, depth: number): Vector
   const along = (i: 0 | 1 | 2) => position[i] + u * right[i] + v * up[i] - depth * back[i];
   return [along(0), along(1), along(2)];
 }
+
+/**
+ * A place beside an eye from which a scene in a box, the eye and its view volume fill a part of the
+ * picture: each corner tells how far back one must be to see it.
+ */
+export function frameFrom(eye: Eye, min: Vector, max: Vector, fill: number): { position: Vector; focalPoint: Vector; viewUp: Vector } {
+  const corner = (i: number, a: Vector, b: Vector): Vector => [i & 1 ? b[0] : a[0], i & 2 ? b[1] : a[1], i & 4 ? b[2] : a[2]];
+  const corners = (a: Vector, b: Vector) => Array.from({ length: 8 }, (_, i) => corner(i, a, b));
+
+  // The view volume reaches from the nearest to the farthest corner of the scene.
+  const scene = corners(min, max);
+  const depths = scene.map((p) => -dot(minus(p, eye.position), eye.back));
+  const ends = [Math.max(Math.min(...depths), eye.parallelHeight === null ? 1e-3 * Math.max(...depths) : -Infinity), Math.max(...depths)];
+  const volume = ends.flatMap((depth) => [0, 1].flatMap((x) => [0, 1].map((y) => unproject(eye, x, y, depth))));
+  const all = [...scene, ...volume, eye.position];
+  const least = (k: 0 | 1 | 2) => Math.min(...all.map((p) => p[k]));
+  const most = (k: 0 | 1 | 2) => Math.max(...all.map((p) => p[k]));
+  const [a, b]: [Vector, Vector] = [
+    [least(0), least(1), least(2)],
+    [most(0), most(1), most(2)],
+  ];
+  const focalPoint = a.map((v, i) => (v + b[i]!) / 2) as Vector;
+
+  // Look from the right, a bit above and behind.
+  const towards = unit([0, 1, 2].map((i) => eye.right[i]! + eye.up[i]! * 0.5 + eye.back[i]! * 0.35) as Vector);
+  const own = axes(towards, [0, 0, 0], eye.up);
+  const half = Math.tan((eye.viewAngle * Math.PI) / 360) * fill;
+  const needs = corners(a, b).map((p) => {
+    const from = minus(p, focalPoint);
+    return dot(from, own.back) + Math.max(Math.abs(dot(from, own.up)) / half, Math.abs(dot(from, own.right)) / (half * eye.aspect));
+  });
+  const distance = Math.max(...needs);
+  return { position: focalPoint.map((v, i) => v + towards[i]! * distance) as Vector, focalPoint, viewUp: eye.up };
+}

@@ -8,6 +8,7 @@ import { acceptDrops, startFiles } from "./files.ts";
 import { talkToParent } from "./frame.ts";
 import { listenToKeys } from "./keys.ts";
 import { page } from "./page.ts";
+import { followPixel, listenToEscape } from "./views/chosen.ts";
 import { readTexts, setLanguage, t } from "./words.ts";
 import { browserLanguage } from "./app.ts";
 import { onWidthChange } from "./width.ts";
@@ -41,6 +42,7 @@ async function start() {
   if (!missing.includes("DecompressionStream")) await readTexts();
   const app = new App();
   app.onRender(() => {
+    followPixel(app);
     render(page(app), root);
     app.after("scrollers", 200, () => markScrollers(root));
   });
@@ -60,6 +62,7 @@ async function start() {
   }
   listenToKeys(app);
   onWidthChange(() => app.changed());
+  listenToEscape(app);
   acceptDrops(app);
   talkToParent(app);
   await app.openFragment(location.hash.slice(1));

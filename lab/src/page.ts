@@ -1,8 +1,6 @@
 // The whole page: what stands where.
 
 import { html, nothing, type TemplateResult } from "lit-html";
-import { ref } from "lit-html/directives/ref.js";
-import { drawing } from "./parts/markup.ts";
 import type { App } from "./app.ts";
 import type { DialogName } from "./open-dialogs.ts";
 import { nameOf } from "./states.ts";
@@ -23,8 +21,9 @@ import { formulaRegion } from "./views/formula.ts";
 import { hasLegend } from "./views/marks.ts";
 import { menubar } from "./views/menus.ts";
 import { compareAll, illumination, pipeline, scene, shading } from "./views/pages.ts";
-import { dragChoice, legend, show, stage } from "./views/picture.ts";
+import { dragChoice, legend, stage } from "./views/picture.ts";
 import { pixelRegion } from "./views/pixel.ts";
+import { secondView } from "./views/second.ts";
 import { settings } from "./views/settings.ts";
 import { stepsToolbar } from "./views/steps.ts";
 import { structure } from "./views/structure.ts";
@@ -74,7 +73,6 @@ function topics(app: App): TemplateResult {
 function pictures(app: App): TemplateResult {
   const isAlone = app.lab.compare === "none";
   const isFull = app.lab.layout === "full";
-  const overview = app.answers.get("overview");
   return html`<div class=${app.hasSteps ? "pictures with-steps" : "pictures"}>
     ${isAlone
       ? stage(app, { name: t("Picture"), picture: "a", plane: app.plane, isBusy: app.isBusy })
@@ -85,26 +83,7 @@ function pictures(app: App): TemplateResult {
       ${cameraToolbar(app)}
       ${isFull ? html`${dragChoice(app)} ${compareChoice(app)}` : nothing}
     </div>
-    ${app.lab.second !== "off" && overview
-      ? html`<div class="second" role="application" aria-label=${t("Second view")} tabindex="0">
-          <canvas
-            role="img"
-            aria-label=${t("The scene from outside")}
-            ${ref((e) =>
-              show(e as HTMLCanvasElement | undefined, {
-                key: overview.key,
-                value: {
-                  bytes: overview.value.planes[0] ?? new Uint8Array(),
-                  width: Number(overview.value.ok["width"]),
-                  height: Number(overview.value.ok["height"]),
-                },
-              }),
-            )}
-          ></canvas>
-          ${drawing(String(overview.value.ok["drawing"] ?? ""), "overview")}
-        </div>
-        <p class="caption">${t("blue: the view volume; green: boxes in view; red, dashed: boxes that are culled")}</p>`
-      : nothing}
+    ${secondView(app)}
   </div>`;
 }
 

@@ -3,7 +3,6 @@
 // English texts are the keys of the table, or stand last in the row of a short key. What the engine
 // tells in English is looked up there as well.
 
-import packed from "lab-texts";
 import { inflated } from "./inflate.ts";
 import type { Language } from "./link.ts";
 import type { TABLE } from "./table.ts";
@@ -13,9 +12,14 @@ export type Key = keyof typeof TABLE;
 /** The table, once it is read. */
 let table: Record<string, readonly string[]> = {};
 
-/** Reads the table; until then all texts are English. */
+/** Reads the table from the page: JSON, deflated, in base64. Until then all texts are English. */
 export async function readTexts() {
-  const [keys = [], ...columns] = JSON.parse(await inflated(packed).text()) as string[][];
+  const packed = document.getElementById("lab-texts")?.textContent ?? "";
+  takeTexts(JSON.parse(await inflated(packed).text()) as string[][]);
+}
+
+/** Takes a list of keys, then a list of their texts for each language. */
+export function takeTexts([keys = [], ...columns]: string[][]) {
   table = Object.fromEntries(keys.map((key, i) => [key, columns.map((column) => column[i] ?? "")]));
 }
 

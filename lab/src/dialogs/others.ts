@@ -1,6 +1,6 @@
 // The dialogs Camera, Keyboard, Language and About.
 
-import { html, type TemplateResult } from "lit-html";
+import { html, mathml, nothing, type TemplateResult } from "lit-html";
 import type { App } from "../app.ts";
 import { axes, eyeAngles, type Vector } from "../camera.ts";
 import { LANGUAGES, type Language } from "../link.ts";
@@ -68,8 +68,24 @@ export function cameraDialog(app: App): TemplateResult {
         term: "View angle",
       })}
       ${check(t("Parallel"), isParallel, (on) => app.set({ "viewpoint.orthographic": on }), { term: "Parallel" })}
-    </div>`,
+    </div>
+    ${matrices(app)}`,
   );
+}
+
+/** The product of the view transformation and that of all objects, written out. */
+function matrices(app: App): unknown {
+  const all = app.complete?.value.matrices;
+  if (!all) return nothing;
+  const rows = (m: number[][]) => m.map((row) => row.map((v) => String(Number(v.toFixed(4)) || 0)));
+  const matrix = (m: number[][], name: string) => html`<div role="group" aria-label=${name}>
+    <span class="label">${name}</span>
+    <math><mrow><mo>(</mo><mtable>${rows(m).map((row) => mathml`<mtr>${row.map((v) => mathml`<mtd><mn>${v}</mn></mtd>`)}</mtr>`)}</mtable><mo>)</mo></mrow></math>
+  </div>`;
+  return html`<section class="matrices" role="group" aria-label=${t("Matrices")}>
+    <p class="label">${t("Matrices")}: ${t("view")} · ${t("objects")} = ${t("product")}</p>
+    ${matrix(all.view, t("view"))} ${matrix(all.objects, t("objects"))} ${matrix(all.product, t("product"))}
+  </section>`;
 }
 
 const KEYS: [string[], Key][] = [

@@ -1,26 +1,36 @@
 // Trees with arrow keys: one node is a tab stop, long trees show a window of nodes.
 
 import { html, nothing, type TemplateResult } from "lit-html";
+import { ref } from "lit-html/directives/ref.js";
+import type { Choice } from "./choice.ts";
 import { css } from "./css.ts";
 
 export interface Node {
   id: number;
   parent: number | null;
-  text: string;
-  choose?: (() => void) | undefined;
+  text: () => string;
+  choice?: () => Choice | null;
+  /** The facet that the node stands for. */
+  facet?: number | null;
 }
 
 export interface Tree {
   name: string;
+  /** A list that is the same one is read once. */
   nodes: Node[];
+  /** How many of the nodes are there. */
+  count?: number;
+  /** The node of the present step. */
   current?: number | null | undefined;
+  /** Finds the chosen node, where it is brought into view in place of the present one. */
+  isChosen?: ((facet: number) => boolean) | null;
 }
 
 interface Looks {
   closed: Set<number>;
   focus: number | null;
   offset: number;
-  current: number | null;
+  target: number | null;
 }
 
 const ROW = 26;
@@ -28,39 +38,72 @@ const MOST_ROWS = 200;
 
 const looks = new Map<string, Looks>();
 
+interface Relations {
+  /** Where each node stands in the list. */
+  places: Map<number, number>;
+  /** The places of those below each node; of the roots below `null`. */
+  below: Map<number | null, number[]>;
+}
+
+const relations = new WeakMap<Node[], Relations>();
+
+function relationsOf(nodes: Node[]): Relations {
+  let known = relations.get(nodes);
+  if (known) return known;
+  const places = new Map(nodes.map((n, i) => [n.id, i]));
+  const below: Relations["below"] = new Map();
+  nodes.forEach((node, i) => {
+    const parent = node.parent !== null && places.has(node.parent) ? node.parent : null;
+    const list = below.get(parent);
+    if (list) list.push(i);
+    else below.set(parent, [i]);
+  });
+  relations.set(nodes, (known = { places, below }));
+  return known;
+}
+
 export function tree(t: Tree, changed: () => void): TemplateResult {
   let look = looks.get(t.name);
-  if (!look) looks.set(t.name, (look = { closed: new Set(), focus: null, offset: 0, current: null }));
+  if (!look) looks.set(t.name, (look = { closed: new Set(), focus: null, offset: 0, target: null }));
   const own = look;
 
-  // Put children below their parents.
-  const ids = new Set(t.nodes.map((n) => n.id));
-  const children = new Map<number | null, Node[]>();
-  for (const node of t.nodes) {
-    const parent = node.parent !== null && ids.has(node.parent) ? node.parent : null;
-    const list = children.get(parent);
-    if (list) list.push(node);
-    else children.set(parent, [node]);
-  }
+  // Leave out nodes that are not there yet: they stand behind the others.
+  const { places, below } = relationsOf(t.nodes);
+  const count = t.count ?? t.nodes.length;
+  const nodeOf = (id: number | null) => {
+    const place = id === null ? undefined : places.get(id);
+    return place !== undefined && place < count ? t.nodes[place] : undefined;
+  };
+  const childrenOf = (id: number | null) => {
+    const all = below.get(id) ?? [];
+    return all.length && all[all.length - 1]! >= count ? all.filter((place) => place < count) : all;
+  };
 
-  // Open the way to the present node when it changes.
-  const byId = new Map(t.nodes.map((n) => [n.id, n]));
+  // Open the way to the present or chosen node when it changes.
   const current = t.current ?? null;
-  const isNew = current !== own.current;
-  if (isNew && current !== null) {
-    for (let n = byId.get(current)?.parent ?? null; n !== null; n = byId.get(n)?.parent ?? null) own.closed.delete(n);
-    own.focus = current;
+  const isMarked = t.isChosen;
+  const marks = (n: Node | undefined) => Boolean(isMarked && n && typeof n.facet === "number" && isMarked(n.facet));
+  const marked = isMarked && !marks(nodeOf(current)) ? t.nodes.findIndex((n, i) => i < count && marks(n)) : -1;
+  const target = marked >= 0 ? t.nodes[marked]!.id : current;
+  const isNew = nodeOf(target) !== undefined && target !== own.target;
+  if (isNew) {
+    for (let n = nodeOf(target)?.parent; n !== undefined && n !== null; n = nodeOf(n)?.parent) own.closed.delete(n);
+    own.focus = target;
   }
-  own.current = current;
+  // A node that is not here yet is looked for again.
+  own.target = nodeOf(target) ? target : null;
 
   // List the nodes that are to be seen.
   const shown: { node: Node; level: number; place: number; among: number }[] = [];
-  const stack = [...(children.get(null) ?? [])].reverse().map((node, i, all) => ({ node, level: 1, place: all.length - i, among: all.length }));
+  const stack: typeof shown = [];
+  const push = (id: number | null, level: number) => {
+    const children = childrenOf(id);
+    for (let i = children.length - 1; i >= 0; i--) stack.push({ node: t.nodes[children[i]!]!, level, place: i + 1, among: children.length });
+  };
+  push(null, 1);
   for (let top = stack.pop(); top; top = stack.pop()) {
     shown.push(top);
-    const below = children.get(top.node.id) ?? [];
-    if (own.closed.has(top.node.id)) continue;
-    for (let i = below.length - 1; i >= 0; i--) stack.push({ node: below[i]!, level: top.level + 1, place: i + 1, among: below.length });
+    if (!own.closed.has(top.node.id)) push(top.node.id, top.level + 1);
   }
   const focusAt = Math.max(0, shown.findIndex((s) => s.node.id === own.focus));
   const isLong = shown.length > MOST_ROWS;
@@ -84,7 +127,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
     const here = shown[focusAt];
     if (!here) return;
     const isClosed = own.closed.has(here.node.id);
-    const hasChildren = children.has(here.node.id);
+    const hasChildren = childrenOf(here.node.id).length > 0;
     switch (e.key) {
       case "ArrowDown":
         move(focusAt + 1, box);
@@ -110,7 +153,7 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
         break;
       case "Enter":
       case " ":
-        here.node.choose?.();
+        here.node.choice?.()?.choose();
         break;
       default:
         return;
@@ -120,8 +163,9 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
   };
 
   const item = ({ node, level, place, among }: (typeof shown)[number], i: number) => {
-    const hasChildren = children.has(node.id);
+    const hasChildren = childrenOf(node.id).length > 0;
     const isOpen = hasChildren && !own.closed.has(node.id);
+    const choice = node.choice?.();
     const toggle = (e: Event) => {
       e.stopPropagation();
       if (isOpen) own.closed.add(node.id);
@@ -130,21 +174,24 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
     };
     const click = () => {
       own.focus = node.id;
-      node.choose?.();
+      choice?.choose();
       changed();
     };
+    const isMarked = choice?.isChosen ?? false;
     return html`<li
       role="treeitem"
+      class=${`${node.id === current ? "current" : ""}${isMarked ? " chosen" : ""}`}
+      aria-current=${node.id === current ? "true" : nothing}
       aria-level=${level}
       aria-posinset=${place}
       aria-setsize=${among}
       aria-expanded=${hasChildren ? String(isOpen) : nothing}
-      aria-selected=${String(node.id === current)}
+      aria-selected=${String(node.id === current || isMarked)}
       tabindex=${first + i === focusAt ? "0" : "-1"}
-      .style=${css({ "padding-inline-start": `${Math.min(level - 1, 12) * 0.9 + 0.2}rem` })}
+      .style=${css({ "padding-inline-start": `${Math.min(level - 1, 14) * 0.6 + 0.2}rem` })}
       @click=${click}
     >
-      <span class="twist" aria-hidden="true" @click=${toggle}>${hasChildren ? (isOpen ? "▾" : "▸") : "·"}</span>${node.text}
+      <span class="twist" aria-hidden="true" @click=${toggle}>${hasChildren ? (isOpen ? "▾" : "▸") : "·"}</span>${node.text()}
     </li>`;
   };
   const scrolled = (e: Event) => {
@@ -155,9 +202,12 @@ export function tree(t: Tree, changed: () => void): TemplateResult {
       changed();
     }
   };
-  return html`<div class="scroll windowed" @scroll=${scrolled}>
+  const reveal = (e: Element | undefined) => {
+    if (e && isNew && isLong) setTimeout(() => (e.scrollTop = own.offset * ROW));
+  };
+  return html`<div class="scroll windowed" @scroll=${scrolled} ${ref(reveal)}>
     <div .style=${css({ height: isLong ? `${shown.length * ROW}px` : "auto" })}>
-      <ul role="tree" aria-label=${t.name} @keydown=${keys} .style=${css({ transform: `translateY(${first * ROW}px)` })}>
+      <ul role="tree" aria-label=${t.name} aria-multiselectable="true" @keydown=${keys} .style=${css({ transform: `translateY(${first * ROW}px)` })}>
         ${visible.map(item)}
       </ul>
     </div>

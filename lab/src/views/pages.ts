@@ -11,6 +11,7 @@ import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { stagePart, t, translated } from "../words.ts";
+import { choiceOf } from "./chosen.ts";
 import { depthCue } from "./depth-cue.ts";
 import { facing } from "./facing.ts";
 import { show } from "./picture.ts";
@@ -305,8 +306,40 @@ function normals(app: App): TemplateResult {
         reason: chosen === "made" ? null : t("for normals that are made"),
       })}
     </div>
+    ${cornerNormals(app)}
     <p class="note">${t("Faces that differ by less than the crease angle share the mean of their normals; between others there is an edge.")}</p>
   </section>`;
+}
+
+/** The corner whose normals are shown. */
+let cornerNumber = 0;
+
+/** The normals that meet at a corner of the pixel's facet: those of the faces, their mean, and what is used. */
+function cornerNormals(app: App): unknown {
+  const corners = objects(app.answerTo("explain")?.ok["normals"]);
+  if (!explanationOf(app) || !corners.length) return nothing;
+  const corner = corners[cornerNumber] ?? corners[0]!;
+  const words = (c: JsonObject, i: number) => t("corner {0}, vertex {1}", i, String(c["vertex"]));
+  const coordinates = (v: Json | undefined): Cell[] => [0, 1, 2].map((i) => (Array.isArray(v) ? Number(Number(v[i]).toFixed(4)) : null));
+  const faces = objects(corner["faces"]);
+  const rows: Cell[][] = [
+    ...faces.map((f): Cell[] => [t("facet {0}", Number(f["facet"])), ...coordinates(f["normal"])]),
+    [t("mean of the faces"), ...coordinates(corner["mean"])],
+    [t("result"), ...coordinates(corner["result"])],
+  ];
+  const choose = (value: string) => {
+    cornerNumber = Number(value);
+    app.changed();
+  };
+  return html`${combo(t("Corner"), String(corners.indexOf(corner)), corners.map((c, i) => ({ value: String(i), text: words(c, i) })), choose)}
+    ${table({
+      name: t("Normals at the corners"),
+      columns: [t("normal"), "x", "y", "z"],
+      rows,
+      choices: (row) => choiceOf(app, faces[row]?.["facet"]),
+      current: rows.length - 1,
+      caption: true,
+    })}`;
 }
 
 export function shading(app: App): TemplateResult {
@@ -339,7 +372,7 @@ export function shading(app: App): TemplateResult {
     <section class="region" aria-labelledby="increments-title">
       <h2 id="increments-title">${t("Increments")}</h2>
       ${app.get("settings.shading") === "gouraud" && app.lab.pixel
-        ? increments(explanationOf(app))
+        ? increments(app, explanationOf(app))
         : html`<p class="note">${t("Choose Gouraud shading and inspect a pixel to see its line, increment by increment.")}</p>`}
     </section>`;
 }

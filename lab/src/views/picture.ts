@@ -13,6 +13,7 @@ import { drawing } from "../parts/markup.ts";
 import { t } from "../words.ts";
 import { turn, zoom } from "./camera.ts";
 import { asked, channelLegend, highlightLegend, highlightMarks } from "./marks.ts";
+import { chooseShapeAt, chosenOutline, markShapes } from "./chosen.ts";
 
 /** The result that each canvas shows. */
 const drawn = new WeakMap<HTMLCanvasElement, Result<Plane>>();
@@ -142,8 +143,12 @@ async function moveHighlight(app: App, pixel: [number, number]) {
   setPlace(app, app.lightNumber, [...point.world.map((c, i) => round(c + towards[i]! * distance)), 1]);
 }
 
-function pointerUp(app: App) {
+function pointerUp(app: App, e?: PointerEvent) {
   if (!drag) return;
+  if (e && !drag.hasMoved && dragMode === "camera") {
+    const [x, y] = pixelAt(app, e, canvasOf(e));
+    chooseShapeAt(app, e.currentTarget as Element, x + 0.5, y + 0.5);
+  }
   drag = null;
   app.endDrag();
 }
@@ -263,7 +268,7 @@ function handles(app: App): unknown {
 function overlay(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step?.drawing) return nothing;
-  return html`<div class="overlay" aria-hidden="true">${drawing(step.drawing, "overlay")}</div>`;
+  return html`<div class="overlay" aria-hidden="true" ${ref((e) => markShapes(app, e))}>${drawing(step.drawing, "overlay")}</div>`;
 }
 
 export interface Stage {
@@ -289,14 +294,14 @@ export function stage(app: App, s: Stage): TemplateResult {
     .style=${css({ ...size, ...clip })}
     @pointerdown=${(e: PointerEvent) => pointerDown(app, e, picture)}
     @pointermove=${(e: PointerEvent) => pointerMove(app, e, picture)}
-    @pointerup=${() => pointerUp(app)}
+    @pointerup=${(e: PointerEvent) => pointerUp(app, picture === "a" ? e : undefined)}
     @pointercancel=${() => pointerUp(app)}
     @wheel=${(e: WheelEvent) => wheel(app, e, picture)}
     @dblclick=${(e: MouseEvent) => app.inspect(pixelAt(app, e, canvasOf(e)))}
     @keydown=${(e: KeyboardEvent) => keyDown(app, e, picture)}
   >
     <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane))}></canvas>
-    ${picture === "a" ? overlay(app) : nothing} ${cross(app)} ${picture === "a" ? html`${asked(app)} ${highlightMarks(app)} ${handles(app)}` : nothing}
+    ${picture === "a" ? html`${overlay(app)} ${chosenOutline(app)}` : nothing} ${cross(app)} ${picture === "a" ? html`${asked(app)} ${highlightMarks(app)} ${handles(app)}` : nothing}
   </div>`;
 }
 
@@ -322,34 +327,38 @@ function stepLegend(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step) return nothing;
   // Algorithms that overwrite show what will not last in pale colours; the others begin with paper.
-  const pale: [string, string] = ["pale", t("pale: will be drawn over")];
-  const paper: [string, string] = ["paper", t("not decided yet")];
-  const entries: Record<string, [string, string][]> = {
-    window: [
-      ["empty", t("empty window")],
-      ["one", t("one polygon")],
-      ["surrounded", t("surrounded")],
-      ["pixel", t("one pixel")],
-      ["cut", t("cut in four")],
-      paper,
-    ],
-    drawn: [
-      ["stays", t("nearer, is kept")],
-      ["hidden", t("farther, is hidden")],
-      pale,
-    ],
-    line: [
-      ["line", t("scan line")],
-      ["span", t("span")],
-      paper,
-    ],
-    rays: [["rays", t("rays")], paper],
-    piece: [["piece", t("piece")], pale],
-    clip: [["clip", t("clip polygon")], paper],
-    visible: [["visible", t("visible polygon")], paper],
-  };
-  const list = entries[step.group];
-  if (!list) return nothing;
-  return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>
+  const undecided: [string, string] = ["drawn", "piece"].includes(step.group) ? ["pale", t("pale: will be drawn over")] : ["paper", t("not decided yet")];
+  const windows: [string, string][] = [
+    ["empty", t("empty window")],
+    ["one", t("one polygon")],
+    ["surrounded", t("surrounded")],
+    ["pixel", t("one pixel")],
+    ["cut", t("cut in four")],
+  ];
+  const others: [string, string][] = [
+    ["stays", t("nearer, is kept")],
+    ["hidden", t("farther, is hidden")],
+    ["line", t("scan line")],
+    ["span", t("span")],
+    ["rays", t("rays")],
+    ["p", t("P, the present one")],
+    ["q", t("Q, the other one")],
+    ["extent", t("extents in x and y")],
+    ["split-line", t("line of the split")],
+    ["splitter", t("splitter")],
+    ["piece", t("piece")],
+    ["clip", t("clip polygon")],
+    ["inside", t("inside")],
+    ["outside", t("outside")],
+    ["removed", t("hidden, removed")],
+    ["visible", t("visible polygon")],
+  ];
+
+  // Windows have all words, other steps those of what is drawn.
+  const drawn = new Set([...(step.drawing ?? "").matchAll(/class="([^"]*)"/g)].flatMap((m) => m[1]!.split(" ")));
+  const list = step.group === "window" ? windows : others.filter(([key]) => drawn.has(key));
+  const isDrawing = ["window", "drawn", "line", "rays", "piece", "clip", "visible"].includes(step.group);
+  if (!list.length) return nothing;
+  return html`<p class="legend">${[...list, ...(isDrawing ? [undecided] : [])].map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>
     ${step.group === "window" ? html`<p class="note">${t("Windows are cut between tiles of 64 pixels, then at powers of two, never through a pixel.")}</p>` : nothing}`;
 }

@@ -10,6 +10,7 @@ import { tree, type Node } from "../parts/tree.ts";
 import { depthNote } from "../parts/what.ts";
 import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
+import { choiceOf, chosenFinder, chosenWords } from "./chosen.ts";
 
 export const objects = (v: Json | undefined): JsonObject[] => (Array.isArray(v) ? v.filter(isObject) : []);
 const numbers = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : []);
@@ -47,22 +48,22 @@ function fate(c: JsonObject, all: JsonObject[]): string {
   }
 }
 
-function surfaces(explanation: JsonObject): TemplateResult {
+function surfaces(app: App, explanation: JsonObject): TemplateResult {
   const all = objects(explanation["candidates"]);
   const depth = (c: JsonObject) => (typeof c["depth"] === "number" ? c["depth"] : -1);
-  const rows = [...all]
-    .sort((a, b) => depth(b) - depth(a))
-    .map((c): Cell[] => [
-      c["surface"] as number,
-      String(c["mesh"] ?? "–"),
-      String(c["material"] || "–"),
-      typeof c["depth"] === "number" ? Number(c["depth"].toPrecision(6)) : null,
-      fate(c, all),
-    ]);
+  const sorted = [...all].sort((a, b) => depth(b) - depth(a));
+  const rows = sorted.map((c): Cell[] => [
+    c["surface"] as number,
+    String(c["mesh"] ?? "–"),
+    String(c["material"] || "–"),
+    typeof c["depth"] === "number" ? Number(c["depth"].toPrecision(6)) : null,
+    fate(c, all),
+  ]);
   return table({
     name: t("Surfaces at the pixel"),
     columns: [t("Surface"), t("Mesh"), t("Material"), t("Depth"), t("Fate")],
     rows,
+    choices: (row) => choiceOf(app, sorted[row]?.["facet"]),
     caption: true,
   });
 }
@@ -81,7 +82,7 @@ function decisions(app: App, explanation: JsonObject): TemplateResult {
     app.answer("ask-all", { want: "ask-all", state: app.state, pixel }, true);
     app.say(t("Asking all algorithms…"), "ask-all");
   };
-  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, caption: true })}
+  return html`${table({ name: t("Decisions"), columns: [t("algorithm"), t("facet"), t("why")], rows, choices: (row) => choiceOf(app, all[row]?.["facet"]), caption: true })}
   ${isCurrent ? nothing : button(t("Ask all algorithms"), ask)}`;
 }
 
@@ -145,12 +146,16 @@ function light(app: App, explanation: JsonObject): unknown {
   <p class="note">${t("Sum of the samples: {0}; bytes: {1}", three(whole["straight"]), numbers(whole["bytes"]).slice(0, 3).join(" "))}</p>`;
 }
 
-/** `tree "Ray tree"` of the pixel: a ray hangs below the one that sent it. */
-function rays(app: App, explanation: JsonObject): unknown {
-  const list = objects(explanation["rays"]);
-  if (!list.length) return nothing;
+interface RayNode extends Node {
+  facet: number | null;
+  /** How it goes on from the one that sent it. */
+  way: string | null;
+}
+
+/** The rays of the pixel: a ray hangs below the one that sent it. */
+export function rayNodes(app: App): RayNode[] {
   const senders = new Map<string, { id: number; way: string; angles: number[] }>();
-  const nodes: Node[] = list.map((ray, id) => {
+  return objects(explanationOf(app)?.["rays"]).map((ray, id) => {
     const sender = senders.get(JSON.stringify(ray["direction"]));
     for (const on of objects(ray["goes-on"])) {
       senders.set(JSON.stringify(on["direction"]), { id, way: String(on["way"]), angles: numbers(on["angles"]) });
@@ -158,18 +163,26 @@ function rays(app: App, explanation: JsonObject): unknown {
     const met = isObject(ray["meets"]) ? ray["meets"] : null;
     const what = met ? t("surface {0} of {1}, distance {2}", String(met["surface"]), String(met["mesh"] || "–"), number(Number(met["distance"]))) : t("background");
     const how = sender ? `${translated(sender.way)} (${sender.angles.map((a) => `${a.toFixed(1)}°`).join(" → ")}): ` : "";
-    return { id, parent: sender?.id ?? null, text: how + what };
+    const facet = typeof met?.["facet"] === "number" ? met["facet"] : null;
+    return { id, parent: sender?.id ?? null, text: () => how + what, choice: () => choiceOf(app, facet), facet, way: sender ? translated(sender.way) : null };
   });
-  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes }, () => app.changed())}</div>`;
 }
 
-/** `table "Increments"`: Gouraud's intensities on the line of the pixel. */
-export function increments(explanation: JsonObject | null): unknown {
+/** `tree "Ray tree"` of the pixel. */
+export function rayTree(app: App): unknown {
+  const nodes = rayNodes(app);
+  if (!nodes.length) return nothing;
+  return html`<div class="labelled"><p class="label">${t("Ray tree")}</p>${tree({ name: t("Ray tree"), nodes, isChosen: chosenFinder(app) }, () => app.changed())}</div>`;
+}
+
+/** `table "Increments"`: Gouraud's intensities on all lines of the facet, that of the pixel marked. */
+export function increments(app: App, explanation: JsonObject | null): unknown {
   const g = explanation?.["gouraud"];
   const pixel = numbers(explanation?.["pixel"]);
   if (!isObject(g)) return nothing;
   const edges = objects(g["edges"]);
-  const row: Cell[] = [
+  const columns = [t("line"), "I1", "I2", "py", "px", t("additions"), t("incremental"), t("direct")];
+  const own: Cell[] = [
     pixel[1] ?? null,
     ...[0, 1].map((i) => three(edges[i]?.["intensity"])),
     edges.map((e) => three(e["py"])).join("; "),
@@ -178,13 +191,26 @@ export function increments(explanation: JsonObject | null): unknown {
     three(g["intensity"]),
     three(g["direct"]),
   ];
-  return table({
-    name: t("Increments"),
-    columns: [t("line"), "I1", "I2", "py", "px", t("additions"), t("incremental"), t("direct")],
-    rows: [row],
-    caption: true,
-  });
+  const lines = objects(g["lines"]);
+  if (!lines.length) return table({ name: t("Increments"), columns, rows: [own], caption: true });
+
+  // Other lines tell of their last pixel, the pixel's line of the pixel.
+  const current = lines.findIndex((l) => l["row"] === pixel[1]);
+  const row = (l: JsonObject): Cell[] => [
+    l["row"] as number,
+    ...["i1", "i2", "py", "px"].map((k) => three(l[k])),
+    l["additions"] as number,
+    three(l["incremental"]),
+    three(l["direct"]),
+  ];
+  const rows = lines.map((l, i) => (i === current ? own : row(l)));
+  const name = t("Increments");
+  return html`${table({ name, columns, rows, current: current < 0 ? undefined : current, caption: true }, () => app.changed())}
+    <p class="note">${t("The marked line is added up to the pixel, the others to their last pixel.")}</p>`;
 }
+
+/** Whether region Structure shows the ray tree. */
+export const hasOwnRays = (app: App) => app.hasSteps && app.get("settings.global") === "ray-trace";
 
 export function pixelRegion(app: App): TemplateResult {
   const { pixel } = app.lab;
@@ -206,9 +232,10 @@ export function pixelRegion(app: App): TemplateResult {
     </div>
     ${pixel ? nothing : html`<p class="note">${t("Double-click in the picture, or press Enter there.")}</p>`}
     ${explanation
-      ? html`<p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
-          ${surfaces(explanation)} ${depthNote()} ${decisions(app, explanation)} ${light(app, explanation)} ${rays(app, explanation)}
-          ${app.lab.page === "shading" ? nothing : increments(explanation)}`
+      ? html`${app.hasSteps ? nothing : chosenWords(app)}
+          <p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
+          ${surfaces(app, explanation)} ${depthNote()} ${decisions(app, explanation)} ${light(app, explanation)} ${hasOwnRays(app) ? nothing : rayTree(app)}
+          ${app.lab.page === "shading" ? nothing : increments(app, explanation)}`
       : nothing}
   </section>`;
 }

@@ -16,7 +16,10 @@ export function stepsToolbar(app: App): TemplateResult {
   const number = app.stepNumber;
   const step = app.step?.value;
   const words = step && (app.lab.step !== null || number === count) ? stepWords(step) : "";
-  const text = count ? t("{0} of {1}: {2}", number, count, words) : t("Recording…");
+  const recording = app.recording?.value;
+  const told = count ? t("{0} of {1}: {2}", number, count, words) : t("Recording…");
+  const cut = recording?.more && count ? t("first {0} steps of more", recording.steps.toLocaleString("en")) : "";
+  const text = cut ? `${told} (${cut})` : told;
   const isReady = count > 0;
   const go = (to: number) => () => {
     app.playback.pause();
@@ -70,7 +73,7 @@ export function stepsToolbar(app: App): TemplateResult {
         @input=${slide}
         ${ref(show)}
       />
-      <span class="count">${isReady ? html`${number} / ${count}` : nothing}</span>
+      <span class="count">${isReady ? html`${number} / ${count}${cut ? html` <span class="note">${cut}</span>` : nothing}` : nothing}</span>
       ${combo(t("Speed"), String(app.lab.speed), speeds.map((s) => ({ value: String(s), text: t("{0} a second", s) })), (v) =>
         app.setLab({ speed: Number(v) }),
       )}

@@ -8,61 +8,32 @@ import { ref } from "lit-html/directives/ref.js";
 import type { Step } from "../answers.ts";
 import type { App } from "../app.ts";
 import { isObject, type Json, type JsonObject } from "../json.ts";
+import type { Choice } from "../parts/choice.ts";
 import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
-import { table, type Cell } from "../parts/table.ts";
+import { rowButton, table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
 import { depthNote } from "../parts/what.ts";
 import { stepWords } from "../stepwords.ts";
 import { t, translated } from "../words.ts";
+import { choiceOf, chosenFinder, chosenWords, followsChoice, followStep, goTo } from "./chosen.ts";
+import { bspDrawing } from "./drawings/bsp-tree.ts";
+import { clipDrawing } from "./drawings/clip.ts";
+import { blockDrawing, bruteForceDrawing, depthsDrawing } from "./drawings/depths.ts";
+import { quadtreeDrawing } from "./drawings/quadtree.ts";
+import { accelerationDrawing, rayTreeDrawing } from "./drawings/rays.ts";
+import { edgesDrawing } from "./drawings/scan-line.ts";
+import { listDrawing, sortedList, type EntryState } from "./drawings/sorted-list.ts";
+import { hasOwnRays, rayTree } from "./pixel.ts";
+import { doneCount, doneOf, facetsText as facets, list, numbers, objects, presentStep, stepsOf, wholeStep } from "./recorded.ts";
 import { prediction } from "./steps.ts";
 
-const list = (v: Json | undefined): Json[] => (Array.isArray(v) ? v : []);
-const objects = (v: Json | undefined): JsonObject[] => list(v).filter(isObject);
-const numbers = (v: Json | undefined): number[] => list(v).filter((n): n is number => typeof n === "number");
-
-/** Facets as text, the first of many. */
-function facets(v: Json | undefined): string {
-  const all = numbers(v);
-  return all.length > 24 ? `${all.slice(0, 24).join(", ")}, … (${all.length})` : all.join(", ") || "–";
+/** Rows that stand for facets: what choosing them does, and the one that is brought into view. */
+function rowsOf(app: App, facets: (Json | undefined)[], current?: number): { choices: (row: number) => Choice | null; shown: number | undefined } {
+  const finder = chosenFinder(app);
+  const chosen = finder ? facets.findIndex((f) => typeof f === "number" && finder(f)) : -1;
+  return { choices: (row) => choiceOf(app, facets[row]), shown: chosen >= 0 ? chosen : current };
 }
-
-/** All steps of some kinds, brief; empty until they are here. */
-function stepsOf(app: App, kind: string): JsonObject[] {
-  const wants = app.catalog?.wants ?? [];
-  const group = app.recording?.value.groups.find((g) => g.name === kind);
-  if (!group || !wants.includes("steps")) return [];
-  app.answer(`steps ${kind}`, { want: "steps", state: app.state, show: kind, from: 1, to: Math.min(group.count, 20000) }, true);
-  const answer = app.answers.get(`steps ${kind}`);
-  if (!answer) return [];
-  const known = flattened.get(answer);
-  if (known) return known;
-  const steps = objects(answer.value.ok["steps"]).map((s): JsonObject => {
-    const fields = isObject(s["fields"]) ? s["fields"] : {};
-    return { ...fields, at: s["at"] ?? null, parent: s["parent"] ?? null };
-  });
-  flattened.set(answer, steps);
-  return steps;
-}
-
-/** Steps of an answer as their fields with their places. */
-const flattened = new WeakMap<object, JsonObject[]>();
-
-/** A step that the present one follows from. */
-function parentOf(app: App, number: Json | undefined, name: string): JsonObject | null {
-  if (typeof number !== "number") return null;
-  app.answer(`step ${name}`, { want: "step", state: app.state, number, show: "all" }, true);
-  const answer = app.answers.get(`step ${name}`);
-  const ok = answer?.value.ok;
-  return ok && ok["number"] === number ? ok : null;
-}
-
-/** Shows a step, counted among all. */
-const goTo = (app: App, at: Json | undefined) => () => {
-  if (typeof at !== "number") return;
-  if (app.lab.steps !== "all") app.setLab({ steps: "all" });
-  app.goToStep(at);
-};
 
 function warnock(app: App, f: JsonObject): unknown {
   const rows: Cell[][] = [
@@ -72,7 +43,8 @@ function warnock(app: App, f: JsonObject): unknown {
     [t("disjoint"), Number(f["disjoint"] ?? 0), "–"],
     [t("hidden"), list(f["hidden"]).length, facets(f["hidden"])],
   ];
-  return html`${table({ name: t("Window"), columns: [t("class"), t("polygons"), t("facets")], rows, caption: true })} ${quadtree(app, f)}`;
+  return html`${table({ name: t("Window"), columns: [t("class"), t("polygons"), t("facets")], rows, caption: true })} ${facetButtons(app, f)}
+  ${quadtreeDrawing(app, f)} ${quadtree(app, f)}`;
 }
 
 function quadtree(app: App, f: JsonObject): unknown {
@@ -80,76 +52,113 @@ function quadtree(app: App, f: JsonObject): unknown {
   const quarters = [t("top left"), t("top right"), t("bottom left"), t("bottom right")];
   const known = stepsOf(app, "window");
   if (known.length) {
-    const here = app.step?.value.at ?? Infinity;
-    const nodes: Node[] = known
-      .filter((s) => Number(s["at"]) <= here)
-      .map((s) => ({
-        id: Number(s["at"]),
-        parent: typeof s["parent"] === "number" ? s["parent"] : null,
-        text: `${numbers(s["pixels"]).slice(0, 2).join(",")} · ${numbers(s["pixels"]).slice(2).join(" x ")}: ${translated(String(s["verdict"]))}`,
-        choose: goTo(app, s["at"]),
-      }));
-    return labelled(t("Quadtree"), tree({ name: t("Quadtree"), nodes, current: app.step?.value.at ?? null }, () => app.changed()));
+    const nodes = nodesOf(known, (s) => ({
+      id: Number(s["at"]),
+      parent: typeof s["parent"] === "number" ? s["parent"] : null,
+      text: () => `${numbers(s["pixels"]).slice(0, 2).join(",")} · ${numbers(s["pixels"]).slice(2).join(" x ")}: ${translated(String(s["verdict"]))}`,
+      choice: () => choiceOf(app, s["facet"], s["at"]),
+      facet: typeof s["facet"] === "number" ? s["facet"] : null,
+    }));
+    return labelledTree(app, t("Quadtree"), nodes, app.step?.value.at ?? null, doneCount(app, known));
   }
   // Without the other steps, the way down from the whole picture.
-  const nodes: Node[] = [{ id: 0, parent: null, text: t("whole picture") }];
+  const nodes: Node[] = [{ id: 0, parent: null, text: () => t("whole picture") }];
   let parent = 0;
   for (let depth = 0; depth < path.length; depth++) {
     const at = Number(path[depth]);
-    for (let q = 0; q < 4; q++) nodes.push({ id: depth * 4 + q + 1, parent, text: quarters[q]! });
+    for (let q = 0; q < 4; q++) nodes.push({ id: depth * 4 + q + 1, parent, text: () => quarters[q]! });
     parent = depth * 4 + at + 1;
   }
-  return labelled(t("Quadtree"), tree({ name: t("Quadtree"), nodes, current: parent }, () => app.changed()));
+  return labelledTree(app, t("Quadtree"), nodes, parent);
+}
+
+const labelledTree = (app: App, name: string, nodes: Node[], current: number | null, count = nodes.length) =>
+  labelled(name, tree({ name, nodes, count, current, isChosen: chosenFinder(app) }, () => app.changed()));
+
+/** The nodes of the steps of a recording, made once. */
+const knownNodes = new WeakMap<JsonObject[], Node[]>();
+
+function nodesOf(steps: JsonObject[], nodeOf: (s: JsonObject) => Node): Node[] {
+  let nodes = knownNodes.get(steps);
+  if (!nodes) knownNodes.set(steps, (nodes = steps.map(nodeOf)));
+  return nodes;
+}
+
+/** Facets that have a button of their own. */
+const MOST_BUTTONS = 12;
+
+/** The first polygons of the window, to be chosen. */
+function facetButtons(app: App, f: JsonObject): unknown {
+  const all = ["surrounding", "intersecting", "contained", "hidden"].flatMap((k) => numbers(f[k]));
+  if (!all.length) return nothing;
+  return html`<div class="chips" role="group" aria-label=${t("Polygons of the window")}>
+    ${all.slice(0, MOST_BUTTONS).map((facet) => rowButton(choiceOf(app, facet)!, t("facet {0}", facet)))}
+    ${all.length > MOST_BUTTONS ? html`<span class="note">… (${all.length})</span>` : nothing}
+  </div>`;
 }
 
 const labelled = (label: string, content: unknown) => html`<div class="labelled"><p class="label">${label}</p>${content}</div>`;
 
-function edgeTables(f: JsonObject): unknown {
-  const polygons = objects(f["polygons"]);
-  const buckets = objects(f["buckets"]);
-  const edges = buckets.flatMap((b) => objects(b["edges"]).map((e): JsonObject => ({ ...e, row: b["row"] ?? null })));
-  return html`${table({
-    name: t("Polygon table"),
-    columns: [t("polygon"), t("facet"), t("surface"), t("plane")],
-    rows: polygons.map((p, i) => [i, Number(p["facet"]), Number(p["surface"]), numbers(p["plane"]).map((n) => Number(n.toPrecision(4))).join(", ")]),
-    caption: true,
-  })}
-  ${table({
-    name: t("Edge table"),
-    columns: [t("row"), t("polygon"), t("edge"), "x", "dx", t("last row")],
-    rows: edges.map((e) => [e["row"] as number, e["polygon"] as number, e["edge"] as number, e["x"] as number, e["dx"] as number, valueText(e["last"])]),
-    caption: true,
-  })}`;
+function polygonTable(app: App, polygons: JsonObject[], inside: Set<number> | null): unknown {
+  const last = (p: JsonObject) =>
+    inside ? (inside.has(Number(p["facet"])) ? t("in") : t("out")) : numbers(p["plane"]).map((n) => Number(n.toPrecision(4))).join(", ");
+  return table(
+    {
+      name: t("Polygon table"),
+      columns: [t("polygon"), t("facet"), t("surface"), inside ? t("in-out flag") : t("plane")],
+      rows: polygons.map((p, i) => [i, Number(p["facet"]), Number(p["surface"]), last(p)]),
+      ...rowsOf(app, polygons.map((p) => p["facet"])),
+      caption: true,
+    },
+    () => app.changed(),
+  );
+}
+
+/** The rows of each edge table and the facets of their edges, made once. */
+const edgeRows = new WeakMap<JsonObject, { rows: Cell[][]; facets: (Json | undefined)[] }>();
+
+function edgeTable(app: App, f: JsonObject): unknown {
+  let known = edgeRows.get(f);
+  if (!known) {
+    const edges = objects(f["buckets"]).flatMap((b) => objects(b["edges"]).map((e): JsonObject => ({ ...e, row: b["row"] ?? null })));
+    const rows = edges.map((e): Cell[] => [...["row", "polygon", "edge", "x", "dx"].map((k) => e[k] as number), valueText(e["last"])]);
+    edgeRows.set(f, (known = { rows, facets: edges.map((e) => e["facet"]) }));
+  }
+  const columns = [t("row"), t("polygon"), t("edge"), "x", "dx", t("last row")];
+  return table({ name: t("Edge table"), columns, rows: known.rows, ...rowsOf(app, known.facets), caption: true }, () => app.changed());
 }
 
 function scanLine(app: App, step: Step): unknown {
   const f = step.fields;
-  if (f["step"] === "edge-table") return edgeTables(f);
-  const parent = parentOf(app, step.parent, "edge-table");
+  if (f["step"] === "edge-table") return html`${edgesDrawing(app, f, null)} ${polygonTable(app, objects(f["polygons"]), null)} ${edgeTable(app, f)}`;
+  const fields = wholeStep(app, step.parent, "edge-table");
   const inside = new Set(objects(f["spans"]).flatMap((s) => numbers(s["inside"])));
-  const fields = parent && isObject(parent["fields"]) ? parent["fields"] : null;
-  const polygons = objects(fields?.["polygons"]);
-  return html`${table({
-    name: t("Active edge table"),
-    columns: ["x", t("polygon"), t("facet"), t("edge")],
-    rows: objects(f["active_edges"]).map((e) => [e["x"] as number, e["polygon"] as number, e["facet"] as number, e["edge"] as number]),
-    caption: true,
-  })}
-  ${table({
-    name: t("Spans"),
-    columns: [t("pixels"), t("inside"), t("verdict"), t("facet")],
-    rows: objects(f["spans"]).map((s) => [numbers(s["pixels"]).join("–"), facets(s["inside"]), translated(String(s["verdict"])), s["facet"] as number | null]),
-    caption: true,
-  })}
-  ${fields
-    ? table({
-        name: t("Polygon table"),
-        columns: [t("polygon"), t("facet"), t("surface"), t("in-out flag")],
-        rows: polygons.map((p, i) => [i, Number(p["facet"]), Number(p["surface"]), inside.has(Number(p["facet"])) ? t("in") : t("out")]),
-        caption: true,
-      })
-    : nothing}
-  ${fields ? html`<details><summary>${t("Edge table")}</summary>${edgeTables({ ...fields, polygons: [] })}</details>` : nothing}`;
+  const active = objects(f["active_edges"]);
+  const spans = objects(f["spans"]);
+  const changed = () => app.changed();
+  return html`${fields ? edgesDrawing(app, fields, f) : nothing}
+  ${table(
+    {
+      name: t("Active edge table"),
+      columns: ["x", t("polygon"), t("facet"), t("edge")],
+      rows: active.map((e) => [e["x"] as number, e["polygon"] as number, e["facet"] as number, e["edge"] as number]),
+      ...rowsOf(app, active.map((e) => e["facet"])),
+      caption: true,
+    },
+    changed,
+  )}
+  ${table(
+    {
+      name: t("Spans"),
+      columns: [t("pixels"), t("inside"), t("verdict"), t("facet")],
+      rows: spans.map((s) => [numbers(s["pixels"]).join("–"), facets(s["inside"]), translated(String(s["verdict"])), s["facet"] as number | null]),
+      ...rowsOf(app, spans.map((s) => s["facet"] ?? numbers(s["inside"])[0])),
+      caption: true,
+    },
+    changed,
+  )}
+  ${fields ? polygonTable(app, objects(fields["polygons"]), inside) : nothing}
+  ${fields ? edgeTable(app, fields) : nothing}`;
 }
 
 /** Painter's tests in their order; the third and the fourth may be asked with P and Q exchanged. */
@@ -172,35 +181,44 @@ function painter(app: App, step: Step): unknown {
         })
       : nothing;
 
-  // The list: what is left of the first order, and what was painted.
-  const here = step.at ?? step.number;
-  const first = stepsOf(app, "first-order")[0] ?? (f["step"] === "first-order" ? f : null);
-  const painted = stepsOf(app, "painted").filter((s) => Number(s["at"]) <= here);
-  const done = new Map(painted.map((s) => [Number(s["polygon"]), s]));
-  const splits = stepsOf(app, "split").filter((s) => Number(s["at"]) <= here);
-  const moved = new Set(stepsOf(app, "moved").filter((s) => Number(s["at"]) <= here).map((s) => Number(s["polygon"])));
-  const gone = new Set(splits.map((s) => Number(s["polygon"])));
-  const parts = splits.flatMap((s) => objects(s["parts"]));
-  const waiting = [...objects(first?.["polygons"]), ...parts].filter((p) => !gone.has(Number(p["polygon"])) && !done.has(Number(p["polygon"])));
-  const item = (p: JsonObject, state: string) => ({ polygon: Number(p["polygon"]), facet: p["facet"], state });
-  const items = [
-    ...painted.map((p) => item(p, t("painted"))),
-    ...waiting.map((p) => item(p, moved.has(Number(p["polygon"])) ? t("moved, waits") : t("waits"))),
-  ];
+  const sorted = sortedList(app, f);
+  const words: Record<EntryState, string> = { painted: t("painted"), waits: t("waits"), moved: t("moved, waits"), part: t("part, waits"), split: t("split") };
   const current = Number(f["polygon"] ?? -1);
-  return html`${tests} ${items.length ? entries(t("Depth-sort list"), items.map((i) => ({
-    text: t("polygon {0}, facet {1}: {2}", i.polygon, String(i.facet), i.state),
-    isCurrent: i.polygon === current,
-  }))) : nothing}
+  const items = sorted.list.map((e) => ({
+    text: () => t("polygon {0}, facet {1}: {2}", e.polygon, String(e.facet), words[e.state]),
+    isCurrent: e.polygon === current,
+    facet: e.facet,
+    choice: () => choiceOf(app, e.facet, e.at),
+  }));
+  return html`${tests} ${pairButtons(app, f)} ${listDrawing(app, f, sorted)} ${items.length ? entries(app, t("Depth-sort list"), items) : nothing}
   ${f["step"] === "piece" ? fieldsTable(f) : nothing}`;
 }
 
-/** A list; of a long one the part round the present entry. */
-function entries(name: string, items: { text: string; isCurrent?: boolean; choose?: () => void }[]): unknown {
+/** The two polygons of a comparison, to be chosen. */
+function pairButtons(app: App, f: JsonObject): unknown {
+  if (f["step"] !== "compared") return nothing;
+  const one = (letter: string, polygon: Json | undefined, facet: Json | undefined) => {
+    const choice = choiceOf(app, facet);
+    return choice ? rowButton(choice, t("{0}: polygon {1}, facet {2}", letter, String(polygon), String(facet))) : nothing;
+  };
+  return html`<div class="chips" role="group" aria-label=${t("Polygons P and Q")}>${one("P", f["polygon"], f["facet"])} ${one("Q", f["with"], f["with_facet"])}</div>`;
+}
+
+interface Item {
+  text: () => string;
+  isCurrent: boolean;
+  facet: number | null;
+  choice: () => Choice | null;
+}
+
+/** A list; of a long one the part round the present or chosen entry. */
+function entries(app: App, name: string, items: Item[]): unknown {
   const MOST = 200;
-  const at = Math.max(0, items.findIndex((i) => i.isCurrent));
+  const finder = chosenFinder(app);
+  const chosen = finder ? items.findIndex((i) => i.facet !== null && finder(i.facet)) : -1;
+  const at = Math.max(0, chosen >= 0 ? chosen : items.findIndex((i) => i.isCurrent));
   const first = items.length > MOST ? Math.max(0, Math.min(at - 50, items.length - MOST)) : 0;
-  const shown = items.slice(first, first + MOST);
+  const shown = items.slice(first, first + MOST).map((i) => ({ ...i, choice: i.choice() }));
   return labelled(
     name,
     html`<div class="scroll" tabindex="0" role="group" aria-label=${name}>
@@ -208,12 +226,12 @@ function entries(name: string, items: { text: string; isCurrent?: boolean; choos
         ${shown.map(
           (i, n) =>
             html`<li
-              class=${i.isCurrent ? "current" : ""}
+              class=${`${i.isCurrent ? "current" : ""}${i.choice?.isChosen ? " chosen" : ""}`}
               aria-current=${i.isCurrent ? "true" : nothing}
               aria-setsize=${items.length}
               aria-posinset=${first + n + 1}
             >
-              ${i.choose ? html`<button type="button" class="row" @click=${i.choose}>${i.text}</button>` : i.text}
+              ${i.choice ? rowButton(i.choice, i.text()) : i.text()}
             </li>`,
         )}
       </ol>
@@ -223,34 +241,35 @@ function entries(name: string, items: { text: string; isCurrent?: boolean; choos
 
 function bsp(app: App, step: Step): unknown {
   const f = step.fields;
-  const here = step.at ?? step.number;
   const all = stepsOf(app, "tree-node");
-  const there = all.length ? all.filter((s) => Number(s["at"]) <= here) : f["step"] === "tree-node" ? [f] : [];
+  const there = all.length ? all : f["step"] === "tree-node" ? [f] : [];
   const side = (s: JsonObject) => (s["side"] === "front" ? t("front") : s["side"] === "back" ? t("back") : t("root"));
   const count = (v: Json | undefined) => (isObject(v) ? Number(v["count"]) : 0);
-  const nodes: Node[] = there.map((s) => ({
+  const nodes = nodesOf(there, (s) => ({
     id: Number(s["node"]),
     parent: typeof s["above"] === "number" ? s["above"] : null,
-    text: t("{0}: splitter facet {1}, front {2}, back {3}", side(s), valueText(s["splitter"]), count(s["front"]), count(s["back"])),
-    choose: goTo(app, s["at"]),
+    facet: typeof s["splitter"] === "number" ? s["splitter"] : null,
+    text: () => t("{0}: splitter facet {1}, front {2}, back {3}", side(s), valueText(s["splitter"]), count(s["front"]), count(s["back"])),
+    choice: () => choiceOf(app, s["splitter"], s["at"]),
   }));
-  const visits = stepsOf(app, "tree-visit");
-  const seen = visits.length ? visits.filter((s) => Number(s["at"]) <= here) : f["step"] === "tree-visit" ? [f] : [];
+  const visits = doneOf(app, "tree-visit");
+  const seen = visits.length ? visits : f["step"] === "tree-visit" ? [f] : [];
   const order = seen.map((s) => ({
-    text: t("node {0}: facets {1}", Number(s["node"]), facets(s["polygons"])),
-    isCurrent: s["node"] === f["node"] && f["step"] === "tree-visit",
-    choose: goTo(app, s["at"]),
+    text: () => t("node {0}: facets {1}", Number(s["node"]), facets(s["polygons"])),
+    isCurrent: s["node"] === f["node"] && f["step"] !== "tree-node",
+    facet: numbers(s["polygons"])[0] ?? null,
+    choice: () => choiceOf(app, numbers(s["polygons"])[0], s["at"]),
   }));
   const current = typeof f["node"] === "number" ? f["node"] : null;
-  return html`${nodes.length ? labelled(t("BSP tree"), tree({ name: t("BSP tree"), nodes, current }, () => app.changed())) : nothing}
-  ${order.length ? entries(t("Back to front"), order) : nothing}
+  return html`${bspDrawing(app, f)} ${nodes.length ? labelledTree(app, t("BSP tree"), nodes, current, all.length ? doneCount(app, all) : 1) : nothing}
+  ${order.length ? entries(app, t("Back to front"), order) : nothing}
   ${f["step"] === "piece" || f["step"] === "overruled" ? fieldsTable(f) : nothing}`;
 }
 
 function weilerAtherton(app: App, step: Step): unknown {
   const f = step.fields;
-  const here = step.at ?? step.number;
-  const visible = stepsOf(app, "visible").filter((s) => Number(s["at"]) <= here);
+  const here = presentStep(app);
+  const visible = doneOf(app, "visible");
   const clip =
     f["step"] === "clip"
       ? table({
@@ -262,34 +281,83 @@ function weilerAtherton(app: App, step: Step): unknown {
             [t("outside"), Number(f["outside_count"] ?? 0), facets(f["outside"])],
             [t("hidden, removed"), list(f["hidden"]).length, facets(f["hidden"])],
           ],
+          choices: (row) => choiceOf(app, row === 0 ? f["facet"] : numbers(f[["inside", "outside", "hidden"][row - 1]!])[0]),
           caption: true,
         })
       : nothing;
   const items = visible.map((s) => ({
-    text: t("facet {0}: {1} square pixels", Number(s["facet"]), valueText(s["area"])),
+    text: () => t("facet {0}: {1} square pixels", Number(s["facet"]), valueText(s["area"])),
     isCurrent: s["at"] === here,
-    choose: goTo(app, s["at"]),
+    facet: Number(s["facet"]),
+    choice: () => choiceOf(app, s["facet"], s["at"]),
   }));
-  return html`${clip} ${items.length ? entries(t("Visible polygons"), items) : nothing} ${f["step"] === "visible" ? fieldsTable(f) : nothing}`;
+  return html`${clipDrawing(app, f)} ${clip} ${items.length ? entries(app, t("Visible polygons"), items) : nothing} ${f["step"] === "visible" ? fieldsTable(f) : nothing}`;
 }
 
-function zBuffer(step: Step): unknown {
+function zBuffer(app: App, step: Step): unknown {
   const f = step.fields;
   const depths = step.depths ?? null;
-  return html`${depths ? html`${depthTable(depths)}${depthNote()}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+  const choice = choiceOf(app, f["facet"]);
+  return html`${depthsDrawing(app, step)}
+  ${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing}
+  ${depths ? html`${depthTable(depths)}${depthNote()}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
 }
 
 /** Brute force: what the pixel's sample is compared with. */
-function bruteForce(step: Step): unknown {
+function bruteForce(app: App, step: Step): unknown {
   const facets = objects(step.depths?.["facets"]);
-  if (!step.depths) return html`<p class="note">${t("Inspect a pixel to see the depths of all facets over it.")}</p>`;
+  if (!step.depths) return html`${bruteForceDrawing(app, step)}<p class="note">${t("Inspect a pixel to see the depths of all facets over it.")}</p>`;
   const nearest = Math.max(...facets.map((f) => Number(f["depth"])));
-  return html`${table({
-    name: t("Depths"),
-    columns: [t("facet"), t("Depth"), t("verdict")],
-    rows: facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]),
-    caption: true,
-  })}${depthNote()}`;
+  const rows = facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]);
+  const columns = [t("facet"), t("Depth"), t("verdict")];
+  return html`${bruteForceDrawing(app, step)}
+  ${table({ name: t("Depths"), columns, rows, ...rowsOf(app, facets.map((f) => f["facet"])), caption: true }, () => app.changed())}${depthNote()}`;
+}
+
+/** Ray casting: what the ray of the pixel opened in the structure, and the facets that were tested there. */
+function rayCast(app: App, step: Step): unknown {
+  const { pixel } = app.lab;
+  const name = t("Acceleration structure");
+  if (!pixel) {
+    return html`${blockDrawing(app, step, t("Drawing of the acceleration structure"))}
+      <p class="note">${t("Inspect a pixel to see what its ray opens in the acceleration structure.")}</p>`;
+  }
+  if (app.catalog?.wants?.includes("acceleration")) app.answer("acceleration", { want: "acceleration", state: app.state, pixel });
+  const answer = app.answerTo("acceleration")?.ok;
+  const parts = objects(answer?.["parts"]);
+  if (!answer) return blockDrawing(app, step, t("Drawing of the acceleration structure"));
+  const { hit } = answer;
+  const facetWords = (facet: number) => (facet === hit ? t("facet {0}: tested, the hit", facet) : t("facet {0}: tested", facet));
+  const counts = html`<p class="note">${t("Opened: {0} of {1} parts; tests of boxes: {2}, of facets: {3}", parts.length, String(answer["count"] ?? "–"), String(answer["boxes"] ?? "–"), String(answer["tests"] ?? "–"))}</p>`;
+  const hitWords = typeof hit === "number" ? t("The ray hits facet {0}.", hit) : t("The ray hits nothing.");
+  let content: unknown = nothing;
+  if (parts.some((p) => p["parent"] !== null)) {
+    // Facets hang below the part in which they were tested.
+    const nodes: Node[] = parts.flatMap((p, i): Node[] => {
+      const id = Number(p["id"]);
+      const own: Node = { id, parent: typeof p["parent"] === "number" ? p["parent"] : null, text: () => String(p["name"]) };
+      return [own, ...numbers(p["facets"]).map((facet, k): Node => ({ id: -1 - i * 10000 - k, parent: id, text: () => facetWords(facet), facet, choice: () => choiceOf(app, facet) }))];
+    });
+    content = labelledTree(app, name, nodes, nodes.find((n) => n.facet !== undefined && n.facet === hit)?.id ?? null);
+  } else if (parts.length) {
+    const corner = (v: Json | undefined) => numbers(v).map((n) => Number(n.toPrecision(4))).join(" ");
+    const holdsHit = (p: JsonObject) => typeof hit === "number" && numbers(p["facets"]).includes(hit);
+    content = table({
+      name,
+      columns: [t("part"), t("facets"), t("from"), t("to"), t("hit")],
+      rows: parts.map((p) => [String(p["name"]), facets(p["facets"]), corner(p["min"]), corner(p["max"]), holdsHit(p) ? t("facet {0}", Number(hit)) : "–"]),
+      ...rowsOf(app, parts.map((p) => (holdsHit(p) ? hit : numbers(p["facets"])[0]))),
+      current: parts.findIndex(holdsHit),
+      caption: true,
+    });
+  }
+  return html`${accelerationDrawing(app, answer)} ${counts} ${content} <p>${hitWords}</p>`;
+}
+
+/** Ray tracing: the rays of the pixel. */
+function rayTrace(app: App): unknown {
+  if (!app.lab.pixel) return html`<p class="note">${t("Inspect a pixel to see its rays.")}</p>`;
+  return html`${rayTreeDrawing(app)} ${rayTree(app)}`;
 }
 
 /** Runs of pixels in which a facet stays, and those in which it is hidden. */
@@ -340,9 +408,10 @@ function content(app: App, step: Step): unknown {
       return scanLine(app, step);
     case "drawn":
     case "depth-test":
-      return zBuffer(step);
+      return zBuffer(app, step);
+    case "space":
     case "rays":
-      return app.get("settings.visibility") === "brute-force" ? html`${bruteForce(step)} ${fieldsTable(f)}` : fieldsTable(f);
+      return html`${app.get("settings.visibility") === "brute-force" ? bruteForce(app, step) : rayCast(app, step)} ${fieldsTable(f)}`;
     case "first-order":
     case "turn":
     case "compared":
@@ -361,22 +430,38 @@ function content(app: App, step: Step): unknown {
     case "clip":
     case "visible":
       return weilerAtherton(app, step);
-    default:
-      return fieldsTable(f);
+    default: {
+      const choice = choiceOf(app, f["facet"]);
+      return html`${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing} ${fieldsTable(f)}`;
+    }
   }
+}
+
+/** Summaries of the details that are open. */
+const open = new Set<string>();
+
+/** Content that is made only while it is seen. */
+function details(app: App, summary: string, content: () => unknown): TemplateResult {
+  const toggle = (e: Event) => {
+    if ((e.currentTarget as HTMLDetailsElement).open) open.add(summary);
+    else open.delete(summary);
+    app.changed();
+  };
+  return html`<details ?open=${open.has(summary)} @toggle=${toggle}><summary>${summary}</summary>${open.has(summary) ? content() : nothing}</details>`;
 }
 
 /** The drawing of the whole structure: quadtree, tree, list. */
 function wholeDrawing(app: App): unknown {
   const visibility = String(app.get("settings.visibility"));
   if (!["warnock", "painter", "bsp"].includes(visibility) || app.get("settings.global") === "ray-trace") return nothing;
+  return details(app, t("Drawing of the structure"), () => wholeContent(app));
+}
+
+function wholeContent(app: App): unknown {
   app.answer("structure", { want: "structure", state: app.state }, true);
   const text = app.answerTo("structure")?.ok["drawing"];
   if (typeof text !== "string" || text.length > 1_500_000) return nothing;
-  return html`<details>
-    <summary>${t("Drawing of the structure")}</summary>
-    <div class="drawing" role="img" aria-label=${t("Drawing of the structure")}>${drawing(text, "structure")}</div>
-  </details>`;
+  return html`<div class="drawing" role="img" aria-label=${t("Drawing of the structure")}>${drawing(text, "structure")}</div>`;
 }
 
 /** The step whose rows and nodes were brought into view last. */
@@ -384,12 +469,14 @@ let revealed = "";
 
 /** Scrolls lists, tables and trees to what a new step is about. */
 function reveal(app: App, e: Element | undefined) {
-  const key = `${app.step?.key} ${app.answers.size}`;
+  const shown = `${app.step?.key} ${app.answers.size}`;
+  if (!revealed.startsWith(`${app.step?.key} `)) followStep();
+  const key = `${shown} ${app.chosen?.facet}`;
   if (!e || key === revealed) return;
   revealed = key;
   setTimeout(() => {
     for (const box of e.querySelectorAll<HTMLElement>(".scroll")) {
-      const row = box.querySelector('.current, [aria-selected="true"]');
+      const row = (followsChoice() ? box.querySelector(".chosen") : null) ?? box.querySelector(".current");
       if (!row) continue;
       const [of, within] = [row.getBoundingClientRect(), box.getBoundingClientRect()];
       if (of.top < within.top + 26 || of.bottom > within.bottom - 26) box.scrollTop += of.top - within.top - box.clientHeight / 3;
@@ -405,8 +492,8 @@ export function structure(app: App): TemplateResult {
     ${prediction(app)}
     <p class="told">${step ? stepWords(step) : t("Recording…")}</p>
     ${typeof parent === "number"
-      ? html`<p class="note"><button type="button" class="link" @click=${goTo(app, parent)}>${t("follows from step {0}", parent)}</button></p>`
+      ? html`<p class="note"><button type="button" class="link" @click=${() => goTo(app, parent)}>${t("follows from step {0}", parent)}</button></p>`
       : nothing}
-    ${step ? content(app, step) : nothing} ${step ? wholeDrawing(app) : nothing}
+    ${chosenWords(app)} ${step && hasOwnRays(app) ? rayTrace(app) : nothing} ${step ? content(app, step) : nothing} ${step ? wholeDrawing(app) : nothing}
   </section>`;
 }

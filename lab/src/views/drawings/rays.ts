@@ -1,0 +1,132 @@
+// Drawings of rays: the boxes that the pixel's ray opened, along the ray; the tree of traced rays.
+
+import { nothing, svg, type TemplateResult } from "lit-html";
+import type { App } from "../../app.ts";
+import { unproject, type Vector } from "../../camera.ts";
+import { isObject, type Json, type JsonObject } from "../../json.ts";
+import { t } from "../../words.ts";
+import { isChosen } from "../chosen.ts";
+import { eyeOf } from "../picture.ts";
+import { explanationOf, rayNodes } from "../pixel.ts";
+import { leftOut, numbers, objects } from "../recorded.ts";
+import { leftOutOf, links } from "./links.ts";
+import { around, sheet, short, WIDTH } from "./sheet.ts";
+
+interface Ray {
+  origin: Vector;
+  /** From the origin to depth 1 in front of the eye. */
+  direction: Vector;
+}
+
+/** The ray through the centre of the inspected pixel. */
+function rayOf(app: App): Ray | null {
+  const eye = eyeOf(app);
+  const { pixel } = app.lab;
+  if (!eye || !pixel) return null;
+  const [x, y] = [(pixel[0] + 0.5) / app.width, (pixel[1] + 0.5) / app.height];
+  const origin = eye.parallelHeight === null ? eye.position : unproject(eye, x, y, 0);
+  const direction = unproject(eye, x, y, 1).map((v, i) => v - origin[i]!) as Vector;
+  return { origin, direction };
+}
+
+/** Where a ray goes into a box and where it leaves it, by the slabs of the three axes. */
+function interval({ origin, direction }: Ray, min: number[], max: number[]): [number, number] | null {
+  let [from, to] = [0, Infinity];
+  for (let i = 0; i < 3; i++) {
+    const [o, d] = [origin[i]!, direction[i]!];
+    if (Math.abs(d) < 1e-12) continue;
+    const [a, b] = [(min[i]! - o) / d, (max[i]! - o) / d];
+    from = Math.max(from, Math.min(a, b));
+    to = Math.min(to, Math.max(a, b));
+  }
+  return to >= from && Number.isFinite(to) ? [from, to] : null;
+}
+
+/** The point of the surface that is seen, as a depth along the ray. */
+function depthOfHit(app: App, ray: Ray): number | null {
+  const light = explanationOf(app)?.["light"];
+  const world = isObject(light) ? numbers(objects(light["points"])[0]?.["world"]) : [];
+  if (world.length < 3) return null;
+  const dot = (a: number[], b: number[]) => a.reduce((sum, v, i) => sum + v * b[i]!, 0);
+  const from = world.map((v, i) => v - ray.origin[i]!);
+  return dot(from, ray.direction) / dot(ray.direction, ray.direction);
+}
+
+const MOST = 18;
+const ROW = 15;
+
+/** A bar for each part that the ray opened, from where the ray goes in to where it leaves. */
+export function accelerationDrawing(app: App, answer: JsonObject): TemplateResult | typeof nothing {
+  const ray = rayOf(app);
+  const parts = objects(answer["parts"]);
+  if (!ray || !parts.length) return nothing;
+  const { hit } = answer;
+  const isHit = (p: JsonObject) => typeof hit === "number" && numbers(p["facets"]).includes(hit);
+  const levels = new Map<Json, number>();
+  for (const p of parts) levels.set(p["id"] ?? null, p["parent"] === null ? 0 : (levels.get(p["parent"] ?? null) ?? -1) + 1);
+  const spans = parts.map((p) => interval(ray, numbers(p["min"]), numbers(p["max"])));
+  const ends = spans.flatMap((s) => s ?? []);
+  const [near, far] = [Math.min(...ends), Math.max(...ends)];
+  const [left, right] = [84, WIDTH - 8];
+  const X = (depth: number) => left + ((depth - near) / Math.max(1e-9, far - near)) * (right - left);
+
+  // Show the parts round the one with the hit, or the first ones.
+  const shown = around(parts, Math.max(0, parts.findIndex(isHit)), MOST);
+  const height = 24 + shown.shown.length * ROW + 6;
+  const row = (p: JsonObject, i: number) => {
+    const span = spans[shown.first + i];
+    const facets = numbers(p["facets"]);
+    const y = 24 + i * ROW;
+    const level = levels.get(p["id"] ?? null) ?? 0;
+    const facet = isHit(p) ? Number(hit) : facets[0];
+    const style = `${isHit(p) ? "hit" : facets.length ? "tested" : "opened"}${facets.some((f) => isChosen(app, f)) ? " chosen" : ""}`;
+    return svg`<g class=${style} data-facet=${String(facet ?? "")}><title>${`${String(p["name"])}: ${facets.join(", ") || "–"}`}</title>
+      <text x=${3 + Math.min(level, 8) * 3} y=${y + 11}>${String(p["name"]).slice(0, 15)}</text>
+      ${span ? svg`<rect x=${short(X(span[0]))} y=${y + 2} width=${short(Math.max(2, X(span[1]) - X(span[0])))} height=${ROW - 4} rx="2" />` : nothing}</g>`;
+  };
+  const depth = typeof hit === "number" ? depthOfHit(app, ray) : null;
+  const line = depth === null || depth < near || depth > far ? nothing : svg`<path class="hit-line" d=${`M${short(X(depth))} 18V${height - 4}`} />`;
+  return sheet(app, {
+    name: t("Drawing of the acceleration structure"),
+    height,
+    content: svg`<g class="bars"><text x=${left} y="14">${t("near")}</text><text x=${right} y="14" text-anchor="end">${t("far")}</text>
+      <path class="axis" d=${`M${left} 19H${right}`} />${shown.shown.map(row)}${line}</g>`,
+    legend: [
+      ["d-opened", t("opened by the ray")],
+      ["d-tested", t("with facets tested")],
+      ["d-hit", t("with the facet that is hit")],
+      ...(line === nothing ? [] : [["d-hit-line", t("the hit")] as [string, string]]),
+    ],
+    note: leftOut(shown.before, shown.after),
+  });
+}
+
+/** The rays of the pixel, each below the one that sent it. */
+export function rayTreeDrawing(app: App): TemplateResult | typeof nothing {
+  const nodes = rayNodes(app);
+  if (!nodes.length) return nothing;
+  const drawn = links(
+    nodes.map((n) => ({
+      id: n.id,
+      parent: n.parent,
+      look: () => ({
+        text: n.facet === null ? "–" : String(n.facet),
+        title: n.text(),
+        facet: n.facet,
+        style: `${n.facet === null ? "background" : "visited"}${isChosen(app, n.facet) ? " chosen" : ""}`,
+        below: n.way ?? "",
+      }),
+    })),
+    null,
+  );
+  return sheet(app, {
+    name: t("Drawing of the ray tree"),
+    height: drawn.height,
+    content: drawn.content,
+    legend: [
+      ["d-visited", t("facet that the ray meets; below: how it came")],
+      ["d-node", t("background")],
+    ],
+    note: leftOutOf(drawn),
+  });
+}

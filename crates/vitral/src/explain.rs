@@ -10,9 +10,11 @@
 //! the whole picture. Whole pictures are made for algorithms that are asked for by name
 //! ([`Deciders::Named`]), and where translucent materials are in view.
 
+mod path;
 mod spaces;
 mod text;
 
+pub use path::{PartVolume, PathPart, RayPath, ray_path};
 pub use spaces::{FacetSpaces, spaces};
 
 use crate::bench::Entrant;
@@ -271,13 +273,7 @@ pub fn explain(
 ) -> Result<Explanation, Error> {
     // Check that the pixel lies in the picture.
     let settings = &renderer.picture_settings();
-    if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
-        let size = format!(
-            "the picture has {} x {} pixels, counted from 0",
-            settings.picture.width, settings.picture.height
-        );
-        return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
-    }
+    check_pixel(settings, pixel)?;
 
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
@@ -320,6 +316,16 @@ pub fn explain(
     let ExaminedPixel { candidates, light, bytes } = examined;
     let candidates = candidates.into_iter().map(overlying).collect();
     Ok(Explanation { pixel, bytes, candidates, light, surfaces, gouraud, decisions, rays })
+}
+
+/// Checks that the pixel lies in the picture.
+fn check_pixel(settings: &Settings, pixel: [u32; 2]) -> Result<(), Error> {
+    let [width, height] = [settings.picture.width, settings.picture.height];
+    if pixel[0] < width && pixel[1] < height {
+        return Ok(());
+    }
+    let size = format!("the picture has {width} x {height} pixels, counted from 0");
+    Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size))
 }
 
 /// The algorithm that the settings choose.

@@ -24,6 +24,7 @@
 //! | `structure` | the structure that the algorithm built, as SVG |
 //! | `overview` | the scene from outside, with the view volume, boxes and lights as SVG |
 //! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
+//! | `acceleration` | what a pixel's ray opens of the acceleration structure |
 //! | `compare`, `compare-all` | two states; all visibility algorithms |
 //! | `bench` | seconds of several pictures |
 //! | `stages` | what each stage of the pipeline hands on |
@@ -35,6 +36,7 @@
 //! Nothing here knows of browsers; `vitral-lab-wasm` is the way in from JavaScript.
 #![forbid(unsafe_code)]
 
+mod acceleration;
 mod answer;
 mod catalog;
 mod compare;
@@ -158,6 +160,7 @@ impl Lab {
             }
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
+            Want::Acceleration { pixel } => acceleration::path(stage.show(&state, files)?, pixel),
 
             // Compare states or algorithms, or time pictures.
             Want::Compare { b } => compare::compare(stage, files, &state, &b),

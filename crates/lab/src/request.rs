@@ -38,7 +38,7 @@ pub(crate) enum Curve {
 }
 
 /// The names of all requests.
-pub(crate) const WANTS: [&str; 19] = [
+pub(crate) const WANTS: [&str; 20] = [
     "catalog",
     "files",
     "complete",
@@ -50,6 +50,7 @@ pub(crate) const WANTS: [&str; 19] = [
     "overview",
     "explain",
     "ask-all",
+    "acceleration",
     "compare",
     "compare-all",
     "bench",
@@ -100,6 +101,9 @@ pub(crate) enum Want {
         pixel: [u32; 2],
     },
     AskAll {
+        pixel: [u32; 2],
+    },
+    Acceleration {
         pixel: [u32; 2],
     },
     Compare {

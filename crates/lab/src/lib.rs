@@ -26,6 +26,7 @@
 //! | `facets` | what facets belong to, and their outlines in the picture |
 //! | `highlight` | the centroid of a light's highlight, and its mirror point |
 //! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
+//! | `acceleration` | what a pixel's ray opens of the acceleration structure |
 //! | `compare`, `compare-all` | two states; all visibility algorithms |
 //! | `bench` | seconds of several pictures |
 //! | `stages` | what each stage of the pipeline hands on |
@@ -37,6 +38,7 @@
 //! Nothing here knows of browsers; `vitral-lab-wasm` is the way in from JavaScript.
 #![forbid(unsafe_code)]
 
+mod acceleration;
 mod answer;
 mod catalog;
 mod compare;
@@ -166,6 +168,7 @@ impl Lab {
             Want::Highlight { light } => highlight::highlight(stage.show(&state, files)?, light),
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
+            Want::Acceleration { pixel } => acceleration::path(stage.show(&state, files)?, pixel),
 
             // Compare states or algorithms, or time pictures.
             Want::Compare { b } => compare::compare(stage, files, &state, &b),

@@ -7,12 +7,13 @@ use crate::answer::Answer;
 use serde_json::json;
 use std::f64::consts::TAU;
 use std::fmt::Write;
-use vitral::explain::{Deciders, explain};
+use vitral::explain::{Deciders, PartVolume, PathPart, explain, ray_path};
 use vitral::internals::math::{DVec4, func};
 use vitral::internals::render::trace::Step;
 use vitral::internals::scene::framing::{depth_range, frame_from};
 use vitral::{
-    Aabb, AreaShape, Camera, DMat4, DVec3, Error, Light, LightKind, Projection, Renderer, Viewpoint,
+    Aabb, AreaShape, Camera, DMat4, DVec3, Error, Light, LightKind, Projection, Renderer, Settings,
+    Viewpoint, Visibility,
 };
 
 /// How much of the picture is filled.
@@ -20,6 +21,9 @@ const FILL: f64 = 0.8;
 
 /// How far rays go on that meet nothing, in diagonals of the scene.
 const LOST_RAY: f64 = 0.5;
+
+/// Parts of an acceleration structure that are drawn.
+const MOST_PARTS: usize = 200;
 
 /// What is asked for besides the camera of the state.
 pub(crate) struct Asked<'a> {
@@ -89,6 +93,11 @@ pub(crate) fn overview(renderer: &mut Renderer, asked: &Asked<'_>) -> Answer {
         let name = splitter.map_or(String::new(), |facet| format!("facet {facet}"));
         screen.polygon(&mut svg, &section(&renderer.world().bounds, *plane), "plane", &name);
     }
+    if let Some(pixel) = asked.pixel.filter(|_| opens_structure(&renderer.settings)) {
+        for part in ray_path(renderer, &camera, pixel)?.parts.iter().take(MOST_PARTS) {
+            screen.part(&mut svg, part);
+        }
+    }
     for (class, from, to, name) in rays.iter().flat_map(|rays| &rays.0) {
         screen.segment(&mut svg, [*from, *to], class, name);
     }
@@ -101,6 +110,11 @@ pub(crate) fn overview(renderer: &mut Renderer, asked: &Asked<'_>) -> Answer {
     let missing = || Error::usage("this picture has no colours", "");
     let pixels = picture.frame.color.as_ref().ok_or_else(missing)?.data().as_flattened().to_vec();
     Ok((json!({"width": width, "height": height, "drawing": svg}), vec![pixels]))
+}
+
+/// Whether the pixel's ray goes through an acceleration structure.
+fn opens_structure(settings: &Settings) -> bool {
+    settings.visibility == Visibility::RAY_CAST || settings.acceleration.is_some()
 }
 
 /// The plane of the view volume beyond which a whole box lies.
@@ -316,6 +330,29 @@ impl Screen {
                 svg,
                 r#"<line class="{class}" x1="{x1:.2}" y1="{y1:.2}" x2="{x2:.2}" y2="{y2:.2}"><title>{name}</title></line>"#
             );
+        }
+    }
+
+    /// A part of an acceleration structure: the volume that rays are tested against.
+    fn part(&self, svg: &mut String, part: &PathPart) {
+        let [min, max] = [part.min, part.max].map(DVec3::from_array);
+        match part.volume {
+            PartVolume::AxisAlignedBox => {
+                self.cuboid(svg, Aabb { min, max }.corners(), "part", &part.name);
+            }
+            PartVolume::OrientedBox { center, axes } => {
+                let unit = Aabb { min: -DVec3::ONE, max: DVec3::ONE }.corners();
+                let [x, y, z] = axes.map(DVec3::from_array);
+                let corners = unit.map(|c| DVec3::from_array(center) + x * c.x + y * c.y + z * c.z);
+                self.cuboid(svg, corners, "part", &part.name);
+            }
+            PartVolume::Sphere { center, radius } => {
+                for normal in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    let center = DVec3::from_array(center);
+                    let circle = outline(&AreaShape::Disc { center, normal, radius });
+                    self.polygon(svg, &circle, "part", &part.name);
+                }
+            }
         }
     }
 

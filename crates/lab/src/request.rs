@@ -38,7 +38,7 @@ pub(crate) enum Curve {
 }
 
 /// The names of all requests.
-pub(crate) const WANTS: [&str; 21] = [
+pub(crate) const WANTS: [&str; 22] = [
     "catalog",
     "files",
     "complete",
@@ -52,6 +52,7 @@ pub(crate) const WANTS: [&str; 21] = [
     "highlight",
     "explain",
     "ask-all",
+    "acceleration",
     "compare",
     "compare-all",
     "bench",
@@ -113,6 +114,9 @@ pub(crate) enum Want {
         pixel: [u32; 2],
     },
     AskAll {
+        pixel: [u32; 2],
+    },
+    Acceleration {
         pixel: [u32; 2],
     },
     Compare {

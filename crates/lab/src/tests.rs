@@ -168,6 +168,33 @@ fn a_pixel_is_explained_with_its_formula_and_why() {
 }
 
 #[test]
+fn a_ray_tells_what_it_opens_of_each_structure() {
+    let mut lab = Lab::default();
+    for structure in vitral::algorithms()["acceleration"].as_array().unwrap() {
+        let name = structure["name"].as_str().unwrap();
+        let choice = json!({"visibility": "ray-cast", "acceleration": name});
+        let state = small("builtin:cubs", choice);
+        let request = |want: &str| json!({"want": want, "state": state, "pixel": [24, 18]});
+        let (told, _) = ask(&mut lab, request("acceleration"));
+        let (explained, _) = ask(&mut lab, request("explain"));
+        assert_eq!(told["acceleration"], name);
+        assert_eq!(told["hit"], explained["explanation"]["surfaces"][0]["facet"], "{told}");
+        let parts = told["parts"].as_array().unwrap();
+        assert_eq!((parts.is_empty(), told["space"].is_null()), (name == "none", name == "none"));
+        assert_eq!(told["space"]["cells"].is_array(), name == "grid");
+        let turned = parts.iter().filter_map(|part| part["volume"]["type"].as_str()).next();
+        let expected = ["oriented-box", "sphere"].into_iter().find(|volume| *volume == name);
+        assert_eq!(turned, expected, "{told}");
+        for (position, part) in parts.iter().enumerate().filter(|(_, p)| !p["parent"].is_null()) {
+            assert!(parts[..position].iter().any(|above| above["id"] == part["parent"]), "{told}");
+        }
+    }
+    let state = small("builtin:cubs", json!({}));
+    let outside = json!({"want": "acceleration", "state": state, "pixel": [48, 0]});
+    assert!(error(&mut lab, outside).contains("there is no pixel"));
+}
+
+#[test]
 fn algorithms_agree_and_defects_do_not() {
     let mut lab = Lab::default();
     let [a, b, c] = [
@@ -182,7 +209,9 @@ fn algorithms_agree_and_defects_do_not() {
     assert!(other["agreement"]["differ"].as_u64().unwrap() > 20);
     assert_eq!(other["agreement"]["first"].as_array().unwrap().len(), 20);
     let (all, _) = ask(&mut lab, json!({"want": "compare-all", "state": a}));
-    assert!(all["rows"].as_array().unwrap().iter().all(|row| row["differ"] == 0), "{all}");
+    let rows = all["rows"].as_array().unwrap();
+    assert!(rows.iter().all(|row| row["differ"] == 0 && row["memory"] != 0), "{all}");
+    assert_eq!((&rows[0]["algorithm"], &rows[0]["memory"]), (&json!("z-buffer"), &Value::Null));
 }
 
 #[test]
@@ -445,6 +474,16 @@ fn the_second_view_shows_the_rays_of_a_pixel_and_planes_of_a_tree() {
     let svg = told["drawing"].as_str().unwrap();
     for class in ["ray", "light-ray", "plane"] {
         assert!(svg.contains(&format!(r#"class="{class}""#)), "{class} in {svg}");
+    }
+
+    // With ray casting, what the ray opens of the structure (P13, P15).
+    for acceleration in ["bvh", "grid", "oriented-box", "sphere"] {
+        let settings = json!({"visibility": "ray-cast", "acceleration": acceleration});
+        let state = small("builtin:cubs", settings);
+        let request = json!({"want": "overview", "state": state, "pixel": [24, 20]});
+        let (told, _) = ask(&mut lab, request);
+        let svg = told["drawing"].as_str().unwrap();
+        assert!(svg.contains(r#"class="part""#), "{acceleration}: {svg}");
     }
 }
 

@@ -115,24 +115,32 @@ pub enum Passed {
 }
 
 impl Passed {
+    /// The name of each part; none where there is no structure.
+    pub fn names(&self) -> Vec<String> {
+        match self {
+            Self::Nowhere => Vec::new(),
+            Self::Nodes(numbers) | Self::Objects(numbers) => {
+                numbers.iter().map(u32::to_string).collect()
+            }
+            Self::Octants(cells) => cells.clone(),
+            Self::Cells(cells) => cells.iter().map(|[x, y, z]| format!("{x},{y},{z}")).collect(),
+        }
+    }
+
     /// In words: how many, and the first few.
     fn describe(&self) -> String {
         const MAX_NAMED: usize = 16;
-        let (what, mut names): (_, Vec<String>) = match self {
+        let mut names = self.names();
+        names.truncate(MAX_NAMED);
+        let what = match self {
             Self::Nowhere => return String::new(),
-            Self::Nodes(nodes) => {
-                ("node(s)", nodes.iter().take(MAX_NAMED).map(u32::to_string).collect())
+            Self::Nodes(_) => "node(s)",
+            Self::Objects(_) => "object(s)",
+            Self::Octants(_) => {
+                names.iter_mut().for_each(|name| *name = format!("\"{name}\""));
+                "octant(s)"
             }
-            Self::Objects(objects) => {
-                ("object(s)", objects.iter().take(MAX_NAMED).map(u32::to_string).collect())
-            }
-            Self::Octants(cells) => {
-                ("octant(s)", cells.iter().take(MAX_NAMED).map(|c| format!("\"{c}\"")).collect())
-            }
-            Self::Cells(cells) => {
-                let name = |[x, y, z]: &[u32; 3]| format!("{x},{y},{z}");
-                ("cell(s)", cells.iter().take(MAX_NAMED).map(name).collect())
-            }
+            Self::Cells(_) => "cell(s)",
         };
         let count = self.len();
         if count > MAX_NAMED {

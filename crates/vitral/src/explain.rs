@@ -12,11 +12,13 @@
 
 mod corner_normals;
 mod gouraud;
+mod path;
 mod spaces;
 mod text;
 
 pub use corner_normals::{CornerNormal, NormalOfFace, corner_normals};
 pub use gouraud::{Gouraud, GouraudEdge, GouraudLine};
+pub use path::{PartVolume, PathPart, RayPath, ray_path};
 pub use spaces::{FacetSpaces, facet_outlines, spaces};
 
 use crate::bench::Entrant;
@@ -237,13 +239,7 @@ pub fn explain(
 ) -> Result<Explanation, Error> {
     // Check that the pixel lies in the picture.
     let settings = &renderer.picture_settings();
-    if pixel[0] >= settings.picture.width || pixel[1] >= settings.picture.height {
-        let size = format!(
-            "the picture has {} x {} pixels, counted from 0",
-            settings.picture.width, settings.picture.height
-        );
-        return Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size));
-    }
+    check_pixel(settings, pixel)?;
 
     // The limit is each algorithm's; what remains of the whole is that the user may cancel.
     let budget = renderer.execution().budget.renewed().with_time_limit(None);
@@ -289,6 +285,16 @@ pub fn explain(
     let ExaminedPixel { candidates, light, bytes } = examined;
     let candidates = candidates.into_iter().map(overlying).collect();
     Ok(Explanation { pixel, bytes, candidates, light, surfaces, normals, gouraud, decisions, rays })
+}
+
+/// Checks that the pixel lies in the picture.
+fn check_pixel(settings: &Settings, pixel: [u32; 2]) -> Result<(), Error> {
+    let [width, height] = [settings.picture.width, settings.picture.height];
+    if pixel[0] < width && pixel[1] < height {
+        return Ok(());
+    }
+    let size = format!("the picture has {width} x {height} pixels, counted from 0");
+    Err(Error::usage(format!("there is no pixel {},{}", pixel[0], pixel[1]), size))
 }
 
 /// The algorithm that the settings choose.

@@ -23,10 +23,12 @@
 
 use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
+use super::path::PartExtent;
 use super::triangles::{Triangles, bounds_of, reaches};
 use super::{Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
 use crate::{Cached, Execution, Session};
+use std::collections::HashMap;
 use std::sync::Arc;
 use vitral_exec::{Budget, Limit, Workers};
 use vitral_math::Vec3;
@@ -366,6 +368,26 @@ impl Structure for KdTree {
 
     fn names(&self, parts: &[u32]) -> Passed {
         Passed::Nodes(parts.to_vec())
+    }
+
+    fn part_count(&self) -> u32 {
+        self.nodes.len() as u32
+    }
+
+    fn extents(&self, parts: &[u32]) -> Vec<PartExtent> {
+        // Each node's plane cuts its cell into those of its sides.
+        let mut cells = HashMap::from([(0, (None, self.root))]);
+        let extent = |&part: &u32| {
+            let (above, cell) = cells[&part];
+            let node = &self.nodes[part as usize];
+            if node.axis != NO_AXIS {
+                let below = [part + 1, part + node.link];
+                let sides = sides(cell, node.axis as usize, node.at, self.slack);
+                cells.extend(below.into_iter().zip(sides.map(|side| (Some(part), side))));
+            }
+            PartExtent::of_box(above, cell, self.triangles.center)
+        };
+        parts.iter().map(extent).collect()
     }
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {

@@ -13,6 +13,7 @@ use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
 use super::intersect::Ray;
 use super::packet::{Packet, PacketVisitor};
+use super::path::PartExtent;
 use super::sah::{BYTES_A_TRIANGLE, BoxNode, SAH_DEPTH, build};
 use super::triangles::Triangles;
 use super::wide::Wide;
@@ -212,6 +213,14 @@ impl Structure for Bvh {
 
     fn names(&self, parts: &[u32]) -> Passed {
         Passed::Nodes(parts.to_vec())
+    }
+
+    fn part_count(&self) -> u32 {
+        self.wide().part_count()
+    }
+
+    fn extents(&self, parts: &[u32]) -> Vec<PartExtent> {
+        self.wide().extents(parts, self.triangles.center)
     }
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {

@@ -19,6 +19,7 @@
 
 use super::beam::Beam;
 use super::follow::Follow;
+use super::path::PartExtent;
 use super::triangles::{Triangles, bounds_of};
 use super::{Structure, Visitor, space_step};
 use crate::trace::{Passed, Step};
@@ -191,6 +192,12 @@ impl Grid {
         ((z * self.count[1] + y) * self.count[0] + x) as usize
     }
 
+    /// The column, row and layer of the cell of this number.
+    fn cell_of(&self, index: u32) -> [u32; 3] {
+        let [columns, rows, _] = self.count.map(|c| c as u32);
+        [index % columns, index / columns % rows, index / (columns * rows)]
+    }
+
     /// Shows the triangles of one cell.
     #[inline(always)]
     fn show(&self, cell: [i32; 3], near: f32, visitor: &mut impl Visitor) {
@@ -350,10 +357,20 @@ impl Structure for Grid {
     }
 
     fn names(&self, parts: &[u32]) -> Passed {
-        let [columns, rows, _] = self.count.map(|c| c as u32);
-        Passed::Cells(
-            parts.iter().map(|p| [p % columns, p / columns % rows, p / (columns * rows)]).collect(),
-        )
+        Passed::Cells(parts.iter().map(|&part| self.cell_of(part)).collect())
+    }
+
+    fn part_count(&self) -> u32 {
+        self.count.iter().product::<i32>() as u32
+    }
+
+    fn extents(&self, parts: &[u32]) -> Vec<PartExtent> {
+        let extent = |&part: &u32| {
+            let corner = Vec3::from_array(self.cell_of(part).map(|c| c as f32));
+            let cell = [corner, corner + 1.0].map(|c| self.min + self.cell * c);
+            PartExtent::of_box(None, cell, self.triangles.center)
+        };
+        parts.iter().map(extent).collect()
     }
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {

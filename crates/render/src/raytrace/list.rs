@@ -7,6 +7,7 @@
 
 use super::beam::Beam;
 use super::follow::Follow;
+use super::path::PartExtent;
 use super::triangles::Triangles;
 use super::{Structure, Visitor};
 use crate::trace::{Passed, Step};
@@ -30,6 +31,14 @@ impl Structure for Triangles {
 
     fn names(&self, _: &[u32]) -> Passed {
         Passed::Nowhere
+    }
+
+    fn part_count(&self) -> u32 {
+        0
+    }
+
+    fn extents(&self, _: &[u32]) -> Vec<PartExtent> {
+        Vec::new()
     }
 
     fn traverse(&self, _: &Beam, visitor: &mut impl Visitor) -> u64 {

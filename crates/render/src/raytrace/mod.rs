@@ -16,6 +16,7 @@ pub mod intersect;
 mod list;
 pub mod octree;
 pub(crate) mod packet;
+pub mod path;
 mod probe;
 pub mod pyramid;
 mod sah;
@@ -26,6 +27,7 @@ pub mod triangles;
 pub mod volumes;
 mod wide;
 
+pub use path::{PartExtent, PartVolume, PathPart, RayPath};
 pub use probe::{Boxes, Probe};
 pub use structure::{Counters, Structure, Tree, Visitor};
 pub(crate) use structure::{Watched, space_step};

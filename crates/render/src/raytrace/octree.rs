@@ -17,6 +17,7 @@
 
 use super::beam::Beam;
 use super::follow::{Follow, StructureUser};
+use super::path::PartExtent;
 use super::triangles::{Triangles, reaches};
 use super::{Probe, Structure, Tree, Visitor, space_step};
 use crate::trace::{Passed, Step};
@@ -290,6 +291,24 @@ impl Structure for Octree {
             name
         };
         Passed::Octants(parts.iter().map(name).collect())
+    }
+
+    fn part_count(&self) -> u32 {
+        self.cells.len() as u32
+    }
+
+    fn extents(&self, parts: &[u32]) -> Vec<PartExtent> {
+        // Cells by the first of their children.
+        let mut parents: BTreeMap<u32, u32> = BTreeMap::new();
+        let extent = |&part: &u32| {
+            let above = parents.range(..=part).next_back().map(|(_, &parent)| parent);
+            let Cell { min, max, children, .. } = self.cells[part as usize];
+            if children > 0 {
+                parents.insert(children, part);
+            }
+            PartExtent::of_box(above, [min, max].map(Vec3::from_array), self.triangles.center)
+        };
+        parts.iter().map(extent).collect()
     }
 
     fn traverse(&self, beam: &Beam, visitor: &mut impl Visitor) -> u64 {

@@ -2,6 +2,7 @@
 
 use super::beam::Beam;
 use super::intersect::Ray;
+use super::path::PartExtent;
 use super::probe::Probe;
 use super::triangles::Triangles;
 use crate::trace::{Passed, Step};
@@ -62,6 +63,12 @@ pub trait Structure: Sync {
 
     /// The names of parts, those above a part before it.
     fn names(&self, parts: &[u32]) -> Passed;
+
+    /// How many parts there are; 0 where there is no structure.
+    fn part_count(&self) -> u32;
+
+    /// Where parts are and what they hang below, those above a part before it, in the order given.
+    fn extents(&self, parts: &[u32]) -> Vec<PartExtent>;
 
     /// Shows `visitor` the triangles of all parts that the beam meets and it does not skip. Returns
     /// the number of boxes or cells looked at.

@@ -14,6 +14,7 @@
 
 use super::beam::{Beam, ROUNDING};
 use super::follow::Follow;
+use super::path::{PartExtent, PartVolume};
 use super::triangles::Triangles;
 use super::{Probe, Structure, Visitor, space_step};
 use crate::trace::{Passed, Step};
@@ -128,6 +129,34 @@ impl Volume {
         }
     }
 
+    /// The volume and the box round it, with what it is relative to.
+    fn extent(&self, scene_center: DVec3) -> PartExtent {
+        match *self {
+            Self::Aligned(bounds) => {
+                PartExtent::of_box(None, bounds.map(Vec3::from_array), scene_center)
+            }
+            Self::Oriented(middle, axes, half) => {
+                let center = middle.as_dvec3() + scene_center;
+                let axes = [0, 1, 2].map(|k| axes[k].as_dvec3() * f64::from(half[k]));
+                let reach = axes.iter().fold(DVec3::ZERO, |reach, axis| reach + axis.abs());
+                let (min, max) = ((center - reach).to_array(), (center + reach).to_array());
+                let (center, axes) = (center.to_array(), axes.map(|axis| axis.to_array()));
+                PartExtent {
+                    above: None,
+                    min,
+                    max,
+                    volume: PartVolume::OrientedBox { center, axes },
+                }
+            }
+            Self::Sphere(center, radius) => {
+                let center = center + scene_center;
+                let (min, max) = ((center - radius).to_array(), (center + radius).to_array());
+                let volume = PartVolume::Sphere { center: center.to_array(), radius };
+                PartExtent { above: None, min, max, volume }
+            }
+        }
+    }
+
     /// A parameter that no place common to the volume and the beam goes below; `None` if they are
     /// apart.
     fn enters(&self, beam: &Beam) -> Option<f32> {
@@ -187,6 +216,15 @@ impl Structure for Volumes {
 
     fn names(&self, parts: &[u32]) -> Passed {
         Passed::Objects(parts.to_vec())
+    }
+
+    fn part_count(&self) -> u32 {
+        self.volumes.len() as u32
+    }
+
+    fn extents(&self, parts: &[u32]) -> Vec<PartExtent> {
+        let center = self.triangles.center;
+        parts.iter().map(|&object| self.volumes[object as usize].extent(center)).collect()
     }
 
     /// The object whose volume is nearest comes first.

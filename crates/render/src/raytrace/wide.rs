@@ -15,14 +15,16 @@
 
 use super::beam::{self, BeamLines};
 use super::intersect::{Ray, surely_beside};
+use super::path::PartExtent;
 use super::sah::{self, area};
 use super::triangles::Triangles;
 use super::{Boxes, Counters, Probe, Visitor};
+use std::collections::HashMap;
 use std::ops::Range;
 use vitral_exec::Workers;
-use vitral_math::Vec3;
 use vitral_math::lanes::prelude::*;
 use vitral_math::lanes::{self, F32x8, LANES, Simd};
+use vitral_math::{DVec3, Vec3};
 
 /// Marks what is below a box as a leaf.
 const LEAF: u32 = 1 << 31;
@@ -248,6 +250,40 @@ impl Wide {
             nodes[i] = below.fold(f32::NEG_INFINITY, f32::max);
         }
         values
+    }
+
+    /// [`super::Structure::part_count`].
+    pub(super) fn part_count(&self) -> u32 {
+        (self.nodes.len() + self.leaves.len()) as u32
+    }
+
+    /// [`super::Structure::extents`], with what the boxes are relative to.
+    pub(super) fn extents(&self, parts: &[u32], center: DVec3) -> Vec<PartExtent> {
+        // A node has the boxes of those below it; the root's is the box round all of these.
+        let boxes = |node: &Node| {
+            let corner = |lane: usize, side: usize| {
+                Vec3::from_array([0, 1, 2].map(|k: usize| node.bounds[k][side][lane]))
+            };
+            let there = (0..LANES).filter(|&lane| node.bounds[0][0][lane] < f32::INFINITY);
+            let child = |lane: usize| (node.below[lane], [corner(lane, 0), corner(lane, 1)]);
+            there.map(child).collect::<Vec<_>>()
+        };
+        let mut known = HashMap::new();
+        let root = self.nodes.first().map_or(Vec::new(), boxes).into_iter().map(|(_, b)| b);
+        if let Some(root) = root.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) {
+            known.insert(0, PartExtent::of_box(None, root, center));
+        }
+
+        // Each node tells where those below it are.
+        let extent = |&part: &u32| {
+            let above = Some(part);
+            for (below, bounds) in self.nodes.get(part as usize).map_or(Vec::new(), boxes) {
+                let extent = PartExtent::of_box(above, bounds, center);
+                known.insert(self.part(below) as u32, extent);
+            }
+            known[&part]
+        };
+        parts.iter().map(extent).collect()
     }
 
     /// [`super::Tree::descend_from`]: the nearest of a node's boxes come first.

@@ -32,8 +32,8 @@ use crate::marks::Marks;
 use crate::raytrace::follow::StructureUser;
 use crate::raytrace::structures::AnyStructure;
 use crate::raytrace::triangles::Triangles;
-use crate::raytrace::{Structure, Tree};
-use crate::stats::VisibilityCounters;
+use crate::raytrace::{RayPath, Structure, Tree};
+use crate::stats::{GeometryStats, VisibilityCounters};
 use crate::{Coherence, Execution, PreparedView};
 use cast::Cast;
 use vitral_exec::Limit;
@@ -52,14 +52,56 @@ impl VisibleSurface for RayCast {
         execution: &Execution,
         sink: &dyn TileSink,
     ) -> Result<Resolved, Limit> {
-        let facets = u64::from(view.session.world.facet_count);
-        let bytes = AnyStructure::bytes(view.acceleration, facets);
-        let bytes = ScreenSetups::bytes(view) + Triangles::bytes(facets) + bytes + facets * 32;
-        execution.budget.charged(bytes, "ray casting", || {
+        execution.budget.charged(bytes(view), "ray casting", || {
             let casting =
                 RayCasting { view, marks, execution, sink, start: execution.budget.elapsed() };
             AnyStructure::new(view.acceleration, view.session, execution)?.lend((casting, grid))
         })
+    }
+}
+
+/// Bytes that ray casting takes, the structure among them.
+fn bytes(view: &PreparedView<'_>) -> u64 {
+    let facets = u64::from(view.session.world.facet_count);
+    let structure = AnyStructure::bytes(view.acceleration, facets);
+    ScreenSetups::bytes(view) + Triangles::bytes(facets) + structure + facets * 32
+}
+
+/// Follows the ray through a pixel's first sample alone: what it opens of the structure of the
+/// view, which is built if the session has none.
+///
+/// # Errors
+/// A limit of the budget.
+pub fn ray_path(
+    view: &PreparedView<'_>,
+    pixel: [u32; 2],
+    execution: &Execution,
+) -> Result<RayPath, Limit> {
+    execution.budget.charged(bytes(view), "following a ray", || {
+        let structure = AnyStructure::new(view.acceleration, view.session, execution)?;
+        structure.lend(Following { view, pixel, execution })
+    })
+}
+
+/// The ray that is followed alone.
+struct Following<'a> {
+    view: &'a PreparedView<'a>,
+    pixel: [u32; 2],
+    execution: &'a Execution,
+}
+
+impl StructureUser for Following<'_> {
+    type Outcome = Result<RayPath, Limit>;
+
+    fn with_structure<T: Structure>(self, structure: &T) -> Self::Outcome {
+        let Self { view, pixel, execution } = self;
+        let on_screen = ScreenSetups::new(view, execution, &mut GeometryStats::default())?;
+        Ok(single::path(&Cast::new(view, execution, structure, on_screen), pixel))
+    }
+
+    fn with_tree<T: Tree>(self, tree: &T) -> Self::Outcome {
+        tree.widen(&self.execution.workers);
+        self.with_structure(tree)
     }
 }
 

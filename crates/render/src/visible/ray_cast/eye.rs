@@ -119,16 +119,30 @@ impl Eye {
         [(pixel(x) - self.middle[0]) * self.scale[0], (self.middle[1] - pixel(y)) * self.scale[1]]
     }
 
+    /// The ray through the sample at `(x, y)` in 1/256 pixel, from the eye or its plane: where it
+    /// starts, and where it goes in one unit of distance from the eye's plane.
+    #[inline(always)]
+    pub(super) fn ray(&self, x: i32, y: i32) -> [DVec3; 2] {
+        let [right, up] = self.aside(x, y);
+        let aside = self.right * right + self.up * up;
+        if self.perspective {
+            [self.position, self.forward + aside]
+        } else {
+            [self.position + aside, self.forward]
+        }
+    }
+
+    /// The distance from the eye's plane of what has this depth.
+    pub(super) fn distance(&self, depth: f32) -> f64 {
+        let [at_zero, slope] = self.depth.map(f64::from);
+        let depth = f64::from(depth);
+        if self.perspective { slope / (depth - at_zero) } else { (at_zero - depth) / slope }
+    }
+
     /// The beam through the sample at `(x, y)` in 1/256 pixel. Its parameter counts from
     /// [`Self::start`].
     pub(super) fn beam(&self, x: i32, y: i32) -> Beam {
-        let [right, up] = self.aside(x, y);
-        let aside = self.right * right + self.up * up;
-        let (origin, direction) = if self.perspective {
-            (self.position, self.forward + aside)
-        } else {
-            (self.position + aside, self.forward)
-        };
+        let [origin, direction] = self.ray(x, y);
         let origin = origin + direction * self.start;
         let width = self.width + self.growth * self.start.max(0.0);
         let width = width + (origin.abs() + self.extent) * CLIP_ROUNDING;

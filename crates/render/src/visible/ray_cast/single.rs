@@ -10,7 +10,7 @@
 
 use super::cast::{Cast, NONE, Stamps, Tests, names};
 use crate::Coherence;
-use crate::raytrace::{Structure, Visitor, Watched};
+use crate::raytrace::{RayPath, Structure, Visitor, Watched};
 use crate::stats::VisibilityCounters;
 use crate::trace::Step;
 use crate::visible::agreement::nearer;
@@ -34,7 +34,20 @@ struct RaySearch<'a, T> {
     tests: Tests,
 }
 
-impl<T: Structure> RaySearch<'_, T> {
+impl<'a, T: Structure> RaySearch<'a, T> {
+    /// Nothing met yet.
+    fn new(cast: &'a Cast<'a, T>) -> Self {
+        Self {
+            cast,
+            sample: [0; 2],
+            nearest: BACKGROUND,
+            setups: [NONE; 2],
+            layers: Vec::new(),
+            stamps: cast.take_stamps(),
+            tests: Tests::new(cast.execution),
+        }
+    }
+
     /// Follows the ray through a sample of a tile's pixel; notes the parts it went through in
     /// `passed`.
     #[inline]
@@ -117,6 +130,28 @@ impl<T: Structure> Visitor for RaySearch<'_, T> {
     }
 }
 
+/// Follows the ray through a pixel's first sample, from the eye to the nearest opaque facet, with no
+/// hint of what its neighbours met: the way it took, and the nearest facet, a layer or not.
+pub(super) fn path<T: Structure>(cast: &Cast<'_, T>, pixel: [u32; 2]) -> RayPath {
+    let offset = cast.view.pattern.position(0);
+    let [x, y] = [0, 1].map(|k: usize| pixel[k] as i32 * SUBPIXEL + offset[k]);
+    let mut search = RaySearch::new(cast);
+    search.sample = [x, y];
+    search.stamps.next();
+    let [origin, direction] = cast.eye.ray(x, y);
+    let ray = [origin + cast.structure.triangles().center, direction];
+    let mut path = RayPath::follow(cast.structure, ray, &cast.eye.beam(x, y), &mut search);
+
+    // Find the nearest among the opaque facet and the layers.
+    let opaque = search.nearest;
+    let nearest = search.layers.drain(..).fold(opaque, |a, b| if nearer(b, a) { b } else { a });
+    if nearest.1 != NO_FACET {
+        path.hit = Some((nearest.1, cast.eye.distance(nearest.0) * direction.length()));
+    }
+    cast.give_stamps(search.stamps);
+    path
+}
+
 /// Fills a tile, a ray for each sample.
 pub(super) fn look<T: Structure>(
     cast: &Cast<'_, T>,
@@ -125,17 +160,7 @@ pub(super) fn look<T: Structure>(
 ) -> Result<VisibilityCounters, Limit> {
     // Prepare the search, whose memory serves all rays of the tile.
     let mut counters = VisibilityCounters::default();
-    let (stamps, none) = (cast.take_stamps(), [NONE; 2]);
-    let tests = Tests::new(cast.execution);
-    let mut search = RaySearch {
-        cast,
-        sample: [0; 2],
-        nearest: BACKGROUND,
-        setups: none,
-        layers: Vec::new(),
-        stamps,
-        tests,
-    };
+    let mut search = RaySearch::new(cast);
     let mut passed = cast.execution.observer.is_some().then(Vec::new);
     let (rows, columns) = size_in_picture(cast.view, tile);
 

@@ -1,6 +1,7 @@
 // Single keys. They act while the picture, the steps or the structure has the focus.
 
 import type { App } from "./app.ts";
+import { isExplaining } from "./parts/what.ts";
 import { setComparison } from "./views/compare.ts";
 import { resetView } from "./views/camera.ts";
 
@@ -27,7 +28,7 @@ export function listenToKeys(app: App) {
 
 /** Leaves the steps, unless something is open or chosen that Escape takes away first. */
 function escape(app: App) {
-  if (app.lab.step === null || app.chosen || app.dialogs.all.length > 0 || document.querySelector(":popover-open")) return;
+  if (app.lab.step === null || app.chosen || app.dialogs.all.length > 0 || isExplaining()) return;
   app.showFinished();
 }
 

@@ -8,6 +8,17 @@ export type Term = (Key extends infer K ? (K extends `about ${infer T}` ? T : ne
 
 const ID = "explanation";
 
+/** Browsers of the first months of 2024 may lack popovers: there the box is hidden and shown by hand. */
+const HAS_POPOVERS = "popover" in HTMLElement.prototype;
+
+const isShown = (box: HTMLElement) => (HAS_POPOVERS ? box.matches(":popover-open") : !box.hidden);
+
+/** Whether an explanation is open. */
+export function isExplaining(): boolean {
+  const box = document.getElementById(ID);
+  return box !== null && isShown(box);
+}
+
 /** The explanation of a term in words. */
 export const explanationText = (term: Term): string => (typeof term === "string" ? t(`about ${term}` as Key) : translated(term.text));
 
@@ -31,10 +42,14 @@ export function what(term: Term, label: string): TemplateResult {
     if (!box) return;
     const [title, text] = box.children;
     // Another term's button changes the explanation that is open.
-    if (box.matches(":popover-open") && title!.textContent !== label) e.preventDefault();
+    const isOther = title!.textContent !== label;
+    if (isShown(box) && isOther) e.preventDefault();
     title!.textContent = label;
     text!.textContent = explanationText(term);
     place(box, e.currentTarget as Element);
+    if (HAS_POPOVERS) return;
+    box.hidden = !box.hidden && !isOther;
+    box.focus({ preventScroll: true });
   };
   return html`<button type="button" class="what" popovertarget=${ID} aria-label=${t("What is {0}?", label)} @click=${fill}>?</button>`;
 }
@@ -48,9 +63,26 @@ export const explanationBox = (): TemplateResult => {
   // The focus goes along, so that the text is read aloud; Escape gives it back.
   const read = (e: Event) => {
     const box = e.currentTarget as HTMLElement;
-    if (box.matches(":popover-open")) box.focus({ preventScroll: true });
+    if (isShown(box)) box.focus({ preventScroll: true });
   };
-  return html`<div id=${ID} class="explanation" popover="auto" role="note" tabindex="-1" aria-labelledby=${`${ID}-title`} @toggle=${read}>
+  const hide = (e: Event) => {
+    if (!HAS_POPOVERS) (e.currentTarget as HTMLElement).hidden = true;
+  };
+  const keys = (e: KeyboardEvent) => {
+    if (e.key === "Escape") hide(e);
+  };
+  return html`<div
+    id=${ID}
+    class="explanation"
+    popover="auto"
+    role="note"
+    tabindex="-1"
+    ?hidden=${!HAS_POPOVERS}
+    aria-labelledby=${`${ID}-title`}
+    @toggle=${read}
+    @focusout=${hide}
+    @keydown=${keys}
+  >
     <strong id=${`${ID}-title`}></strong>
     <p></p>
   </div>`;

@@ -50,8 +50,6 @@ export interface Picture {
   seconds: number;
   warnings: string[];
   counters: Counter[];
-  /** How many different colours it has. */
-  colors?: number;
   facts: JsonObject;
 }
 

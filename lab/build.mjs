@@ -9,20 +9,18 @@ import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
 
-/** The module `lab-texts`: the texts in all languages as JSON, deflated, in base64. */
-const texts = {
-  name: "texts",
-  setup(build) {
-    build.onResolve({ filter: /^lab-texts$/ }, () => ({ path: "src/table.ts", namespace: "texts" }));
-    build.onLoad({ filter: /.*/, namespace: "texts" }, async () => {
-      const bundled = await build.esbuild.build({ entryPoints: ["src/table.ts"], bundle: true, write: false, format: "esm" });
-      const source = Buffer.from(bundled.outputFiles[0].contents).toString("base64");
-      const { TABLE } = await import(`data:text/javascript;base64,${source}`);
-      const packed = deflateRawSync(JSON.stringify(TABLE), { level: 9 }).toString("base64");
-      return { contents: `export default ${JSON.stringify(packed)};`, loader: "js" };
-    });
-  },
-};
+/**
+ * The keys and the texts of each language as lists in JSON, deflated, in base64: data of the page.
+ * Texts of one language beside each other pack better than rows of all languages.
+ */
+async function packedTexts() {
+  const bundled = await build({ entryPoints: ["src/table.ts"], bundle: true, write: false, format: "esm" });
+  const source = Buffer.from(bundled.outputFiles[0].contents).toString("base64");
+  const { TABLE } = await import(`data:text/javascript;base64,${source}`);
+  const keys = Object.keys(TABLE);
+  const columns = [0, 1, 2, 3].map((column) => keys.map((key) => TABLE[key][column] ?? ""));
+  return deflateRawSync(JSON.stringify([keys, ...columns]), { level: 9 }).toString("base64");
+}
 
 /** Leaves out the indentation of lines, which templates would keep. */
 const indentation = {
@@ -34,7 +32,7 @@ const indentation = {
   },
 };
 
-const options = { bundle: true, target: "es2022", legalComments: "none", logLevel: "warning", plugins: [texts, indentation] };
+const options = { bundle: true, target: "es2022", legalComments: "none", logLevel: "warning", plugins: [indentation] };
 
 if (process.argv.includes("--unit")) {
   const entryPoints = readdirSync("src").filter((f) => f.endsWith(".test.ts")).map((f) => `src/${f}`);
@@ -48,7 +46,8 @@ await build({ ...options, entryPoints, outdir: "dist", minify: true, format: "ii
 await build({ ...options, entryPoints: { lab: "src/lab.css" }, outdir: "dist", minify: true });
 
 const [script, worker, style] = ["lab.js", "worker.js", "lab.css"].map((f) => readFileSync(`dist/${f}`, "utf8"));
-const template = readFileSync("index.html", "utf8");
+const texts = await packedTexts();
+const template = readFileSync("index.html", "utf8").replace("<!--LAB-TEXTS-->", () => `<script type="text/plain" id="lab-texts">${texts}</script>`);
 const fill = (text, parts) => Object.entries(parts).reduce((t, [mark, part]) => t.replace(mark, () => part), text);
 
 // The served page: everything external, the policy comes as a header.
@@ -84,5 +83,5 @@ writeFileSync("dist/single.html", single);
 
 const size = script.length + worker.length + style.length;
 const LIMIT = 250_000;
-console.log(`lab.js ${script.length}, worker.js ${worker.length}, lab.css ${style.length}: ${size} of ${LIMIT} bytes`);
+console.log(`lab.js ${script.length}, worker.js ${worker.length}, lab.css ${style.length}: ${size} of ${LIMIT} bytes; texts ${texts.length}`);
 if (size > LIMIT) throw new Error(`script and style are larger than ${LIMIT} bytes`);

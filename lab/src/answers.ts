@@ -50,6 +50,8 @@ export interface Picture {
   seconds: number;
   warnings: string[];
   counters: Counter[];
+  /** How many different colours it has. */
+  colors?: number;
   facts: JsonObject;
 }
 

@@ -588,6 +588,25 @@ export class App {
     this.want(name, key, request, (value) => void this.answers.set(name, { key, value }), isLong);
   }
 
+  /** Asks for what the page does without where the engine refuses it. */
+  answerQuietly(name: string, request: JsonObject) {
+    const key = JSON.stringify(request);
+    if (this.answers.get(name)?.key === key || this.wanted.get(name) === key) return;
+    this.wanted.set(name, key);
+    const isNewest = () => this.wanted.get(name) === key;
+    this.engine.ask(name, { ...request, lang: this.language }).then(
+      (value) => {
+        if (!isNewest()) return;
+        this.answers.set(name, { key, value });
+        this.changed();
+      },
+      (error: unknown) => {
+        if (isNewest() && error instanceof Superseded) this.wanted.delete(name);
+        else if (isNewest()) this.answers.delete(name);
+      },
+    );
+  }
+
   /** Sends a request unless the same was sent last; the newest of a name wins. */
   private want(name: string, key: string, request: JsonObject, take: (answer: Answer) => void, isLong = false) {
     if (this.wanted.get(name) === key) return;
@@ -642,6 +661,12 @@ export class App {
     const step = number === null ? null : Math.min(Math.max(1, number), Math.max(1, count));
     this.playback.prediction = null;
     this.setLab({ step });
+  }
+
+  /** Leaves the steps for the finished picture. */
+  showFinished() {
+    this.playback.pause();
+    this.goToStep(null);
   }
 
   get stepNumber() {

@@ -15,13 +15,26 @@ const uses = (element: Element, key: string) =>
 export function listenToKeys(app: App) {
   addEventListener("keydown", (e) => {
     const element = e.target instanceof Element ? e.target : document.body;
-    if (!app.hasKeys || e.defaultPrevented || e.ctrlKey || e.metaKey || e.altKey) return;
-    if (!element.closest(PLACES) || uses(element, e.key)) return;
+    if (e.defaultPrevented || e.ctrlKey || e.metaKey || e.altKey || !element.closest(PLACES)) return;
+    if (e.key === "Escape") return escape(app);
+    if (!app.hasKeys || uses(element, e.key)) return;
     const act = actions(app)[e.key];
     if (!act) return;
     e.preventDefault();
     act();
   });
+}
+
+/** Leaves the steps, unless something is open or chosen that Escape takes away first. */
+function escape(app: App) {
+  if (app.lab.step === null || app.chosen || app.dialogs.all.length > 0 || document.querySelector(":popover-open")) return;
+  app.showFinished();
+}
+
+/** Turns the comparison on or off; the focus stays in a picture. */
+function toggleComparison(app: App) {
+  setComparison(app, app.lab.compare === "none" ? "side" : "none");
+  setTimeout(() => document.querySelector<HTMLElement>('.pictures [role="application"]')?.focus(), 60);
 }
 
 function actions(app: App): Record<string, () => void> {
@@ -34,7 +47,7 @@ function actions(app: App): Record<string, () => void> {
     End: () => app.goToStep(app.stepCount),
   };
   const others: Record<string, () => void> = {
-    c: () => setComparison(app, app.lab.compare === "none" ? "side" : "none"),
+    c: () => toggleComparison(app),
     p: () => app.inspect(app.cross ?? app.lab.pixel ?? [Math.floor(app.width / 2), Math.floor(app.height / 2)]),
     l: () => app.dialogs.open("lights"),
     "?": () => app.dialogs.open("keyboard"),

@@ -169,6 +169,39 @@ export function setKind(app: App, number: number, type: string) {
   if (kind) replaceKind(app, number, kind);
 }
 
+const cross = (a: number[], b: number[]) => [0, 1, 2].map((i) => a[(i + 1) % 3]! * b[(i + 2) % 3]! - a[(i + 2) % 3]! * b[(i + 1) % 3]!);
+const unit = (v: number[]) => v.map((c) => c / (Math.hypot(...v) || 1));
+
+/** Whether corners span a surface. */
+export const spans = (corners: number[][]) => Math.hypot(...newell(corners)) > 1e-9;
+
+/** Twice the area of a polygon along its normal (Newell). */
+const newell = (corners: number[][]) =>
+  corners.reduce((sum, c, i) => cross(c, corners[(i + 1) % corners.length]!).map((v, k) => v + sum[k]!), [0, 0, 0]);
+
+/** Gives an area light another outline of about the same place, side and size. */
+export function setShape(app: App, number: number, to: "disc" | "polygon") {
+  const light = lightNow(app, number);
+  const shape = light && kindOf(light)["shape"];
+  if (!light || !isObject(shape)) return;
+  const center = placeOf(light)!.slice(0, 3);
+  const corners = Array.isArray(shape["corners"]) ? shape["corners"].map(vector) : [];
+  const round = (v: number[]) => v.map((c) => Number(c.toPrecision(6)));
+  if (to === "disc" && corners.length) {
+    const normal = newell(corners);
+    const radius = Math.sqrt(Math.hypot(...normal) / 2 / Math.PI);
+    setKindField(app, number, { shape: { shape: "disc", center: round(center), normal: round(unit(normal)), radius: Number(radius.toPrecision(6)) } });
+  } else if (to === "polygon" && shape["shape"] === "disc") {
+    // A square of the disc's area, its corners counter-clockwise round the normal.
+    const normal = unit(vector(shape["normal"]));
+    const across = unit(cross(Math.abs(normal[1]!) < 0.9 ? [0, 1, 0] : [1, 0, 0], normal));
+    const along = cross(normal, across);
+    const half = (Number(shape["radius"] ?? 1) * Math.sqrt(Math.PI)) / 2;
+    const corner = (u: number, v: number) => round(center.map((c, i) => c + half * (u * across[i]! + v * along[i]!)));
+    setKindField(app, number, { shape: { shape: "polygon", corners: [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)] } });
+  }
+}
+
 /** The numbers c1, c2, c3 of a light's attenuation. */
 export function attenuationOf(light: JsonObject): [number, number, number] {
   const a = isObject(light["attenuation"]) ? light["attenuation"] : {};

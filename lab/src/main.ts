@@ -11,6 +11,7 @@ import { page } from "./page.ts";
 import { followPixel, listenToEscape } from "./views/chosen.ts";
 import { readTexts, setLanguage, t } from "./words.ts";
 import { browserLanguage } from "./app.ts";
+import { onWidthChange } from "./width.ts";
 
 /** What the browser has to have. */
 function lacking(): string[] {
@@ -60,6 +61,7 @@ async function start() {
     app.fail(e instanceof Error ? e.message : String(e));
   }
   listenToKeys(app);
+  onWidthChange(() => app.changed());
   listenToEscape(app);
   acceptDrops(app);
   talkToParent(app);

@@ -1,12 +1,16 @@
 // The dialogs that are open. They do not block the page; whatever opened one gets the focus back.
 
 import type { App } from "./app.ts";
+import { isPhone } from "./width.ts";
 
 export type DialogName = "lights" | "materials" | "camera" | "keyboard" | "language" | "about";
 
 export class OpenDialogs {
   /** The one that was opened last comes last. */
   all: DialogName[] = [];
+
+  /** Where dialogs were dragged to, in pixels of the window. */
+  readonly places = new Map<DialogName, { left: number; top: number }>();
 
   private readonly openers = new Map<DialogName, Element | null>();
 
@@ -17,13 +21,16 @@ export class OpenDialogs {
     this.all = [...this.all.filter((d) => d !== name), name];
     this.app.changed();
     setTimeout(() => {
+      // A sheet at the bottom leaves the picture above it in view.
+      if (isPhone()) document.querySelector(".pictures .stage")?.scrollIntoView({ block: "start", behavior: "instant" });
       const dialog = document.querySelector(`dialog[data-name="${name}"]`);
-      dialog?.querySelector<HTMLElement>("select, input, button")?.focus();
+      dialog?.querySelector<HTMLElement>("select, input, button")?.focus({ preventScroll: true });
     }, 60);
   }
 
   close(name: DialogName) {
     this.all = this.all.filter((d) => d !== name);
+    this.places.delete(name);
     this.app.changed();
     const opener = this.openers.get(name);
     const isThere = opener instanceof HTMLElement && opener.isConnected && opener.offsetParent !== null;

@@ -10,12 +10,15 @@ import { materialsDialog } from "./dialogs/materials.ts";
 import { pickFiles } from "./files.ts";
 import { formText, PAGES, write, type Page } from "./link.ts";
 import { button } from "./parts/fields.ts";
+import { explanationBox } from "./parts/what.ts";
+import { isNarrow } from "./width.ts";
 import { t, type Key } from "./words.ts";
 import { cameraToolbar } from "./views/camera.ts";
 import { compareChoice, comparison, comparisonControls, comparisonRegions } from "./views/compare.ts";
 import { counters } from "./views/counters.ts";
 import { exerciseRegion, exercises } from "./views/exercise.ts";
 import { formulaRegion } from "./views/formula.ts";
+import { hasLegend } from "./views/marks.ts";
 import { menubar } from "./views/menus.ts";
 import { compareAll, illumination, pipeline, scene, shading } from "./views/pages.ts";
 import { dragChoice, legend, stage } from "./views/picture.ts";
@@ -54,10 +57,10 @@ function topics(app: App): TemplateResult {
     const go = (e: MouseEvent) => {
       if (e.ctrlKey || e.metaKey || e.shiftKey) return;
       e.preventDefault();
-      app.setLab({ page }, "push");
+      if (toPage(app, page).step === null) app.playback.pause();
+      app.setLab(toPage(app, page), "push");
     };
-    const lab = { page };
-    return html`<li><a href=${linkTo(app, lab)} aria-current=${page === app.lab.page ? "page" : nothing} @click=${go}>${t(PAGE_NAMES[page])}</a></li>`;
+    return html`<li><a href=${linkTo(app, toPage(app, page))} aria-current=${page === app.lab.page ? "page" : nothing} @click=${go}>${t(PAGE_NAMES[page])}</a></li>`;
   };
   return html`<nav aria-label=${t("Topics")}>
     <ul>
@@ -74,13 +77,27 @@ function pictures(app: App): TemplateResult {
     ${isAlone
       ? stage(app, { name: t("Picture"), picture: "a", plane: app.plane, isBusy: app.isBusy })
       : html`${comparison(app)} ${comparisonControls(app)}`}
-    ${app.hasSteps ? html`<div class="legend-line">${legend(app)}</div>${stepsToolbar(app)}` : nothing}
+    ${app.hasSteps ? stepsToolbar(app) : nothing}
+    ${hasLegend(app) ? html`<div class="legend-line">${legend(app)}</div>` : nothing}
     <div class="bar">
       ${cameraToolbar(app)}
       ${isFull ? html`${dragChoice(app)} ${compareChoice(app)}` : nothing}
     </div>
     ${secondView(app)}
   </div>`;
+}
+
+/** The pages whose algorithms are shown step by step. */
+const PAGES_WITH_STEPS: Page[] = ["visibility", "pipeline"];
+
+/** Goes to a page; one without steps shows the finished picture. */
+const toPage = (app: App, page: Page): Partial<App["lab"]> => ({ page, step: PAGES_WITH_STEPS.includes(page) ? app.lab.step : null });
+
+/** What stands below the picture: wide tables where there is room, on narrow pages what the page is for. */
+function belowPictures(app: App): unknown {
+  if (app.lab.page === "illumination") return formulaRegion(app);
+  if (app.lab.page === "exercises" && isNarrow()) return exercises(app);
+  return app.lab.page === "visibility" && !isNarrow() ? compareAll(app) : nothing;
 }
 
 /** What the present page shows beside picture and settings. */
@@ -90,12 +107,12 @@ function regions(app: App): unknown {
   const pages: Record<Page, () => unknown> = {
     scene: () => html`${pixelRegion(app)} ${app.lab.pixel ? formulaRegion(app) : nothing} ${scene(app)} ${counters(app)}`,
     pipeline: () => html`${pipeline(app)} ${pixelRegion(app)} ${counters(app)}`,
-    visibility: () => html`${pixelRegion(app)} ${compareAll(app)} ${counters(app)}`,
+    visibility: () => html`${pixelRegion(app)} ${isNarrow() ? compareAll(app) : nothing} ${counters(app)}`,
     illumination: () => html`${pixelRegion(app)} ${illumination(app)}`,
     shading: () => html`${shading(app)} ${pixelRegion(app)} ${counters(app)}`,
-    exercises: () => html`${exercises(app)} ${pixelRegion(app)}`,
+    exercises: () => html`${isNarrow() ? nothing : exercises(app)} ${pixelRegion(app)}`,
   };
-  return html`${exerciseRegion(app)} ${isAlone ? nothing : comparisonRegions(app)} ${app.hasSteps ? structure(app) : nothing} ${pages[page]()}`;
+  return html`${isNarrow() ? nothing : exerciseRegion(app)} ${isAlone ? nothing : comparisonRegions(app)} ${app.hasSteps ? structure(app) : nothing} ${pages[page]()}`;
 }
 
 function messages(app: App): TemplateResult {
@@ -140,7 +157,7 @@ export function page(app: App): TemplateResult {
       ${messages(app)}
       <main>${pictures(app)}</main>
       ${layout === "figure" && app.hasSteps ? html`<div class="regions">${structure(app)}</div>` : nothing} ${status(app)}
-      ${app.dialogs.all.map((d) => DIALOGS[d](app))}
+      ${app.dialogs.all.map((d) => DIALOGS[d](app))} ${explanationBox()}
     </div>`;
   }
   return html`<div class="lab full">
@@ -150,10 +167,10 @@ export function page(app: App): TemplateResult {
     </header>
     ${topics(app)} ${messages(app)}
     <div class=${app.lab.compare === "side" || app.lab.compare === "difference" ? "columns wide-pictures" : "columns"}>
-      <main>${pictures(app)} ${app.lab.page === "illumination" ? formulaRegion(app) : nothing}</main>
+      <main>${pictures(app)} ${isNarrow() ? exerciseRegion(app) : nothing} ${belowPictures(app)}</main>
       ${settings(app)}
       <div class="regions">${regions(app)}</div>
     </div>
-    ${status(app)} ${app.dialogs.all.map((d) => DIALOGS[d](app))}
+    ${status(app)} ${app.dialogs.all.map((d) => DIALOGS[d](app))} ${explanationBox()}
   </div>`;
 }

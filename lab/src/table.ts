@@ -1,8 +1,11 @@
 // All texts of the page: English, then Romanian, French, Portuguese. Course terms as the notes say them.
 
 import { ENGINE } from "./table-engine.ts";
+import { TERMS } from "./table-terms.ts";
 
 const PAGE = {
+  ...TERMS,
+
   // Landmarks, menus, pages
   "Main menu": ["Meniul principal", "Menu principal", "Menu principal"],
   Topics: ["Teme", "Thèmes", "Temas"],
@@ -245,14 +248,14 @@ const PAGE = {
   "box of items {0}: {1}": ["cutia elementelor {0}: {1}", "boîte des éléments {0} : {1}", "caixa dos elementos {0}: {1}"],
   "facet {0} is clipped: {1}": ["fațeta {0} este decupată: {1}", "la facette {0} est découpée : {1}", "a faceta {0} é recortada: {1}"],
   "facet {0} is drawn: {1} runs stay, {2} are hidden": [
-    "fațeta {0} este desenată: {1} șiruri rămân, {2} sunt ascunse",
-    "la facette {0} est tracée : {1} suites restent, {2} sont cachées",
-    "a faceta {0} é desenhada: {1} sequências ficam, {2} são escondidas",
+    "fațeta {0} este desenată: {1} șiruri mai apropiate se păstrează, {2} sunt ascunse",
+    "la facette {0} est tracée : {1} suites plus proches sont gardées, {2} sont cachées",
+    "a faceta {0} é desenhada: {1} sequências mais próximas ficam, {2} são escondidas",
   ],
   "facet {0}, depth {1}; there: {2}; stays: {3}": [
-    "fațeta {0}, adâncimea {1}; acolo: {2}; rămâne: {3}",
-    "facette {0}, profondeur {1} ; déjà là : {2} ; reste : {3}",
-    "faceta {0}, profundidade {1}; lá: {2}; fica: {3}",
+    "fațeta {0}, adâncimea {1}; acolo: {2}; mai aproape, se păstrează: {3}",
+    "facette {0}, profondeur {1} ; déjà là : {2} ; plus proche, gardée : {3}",
+    "faceta {0}, profundidade {1}; lá: {2}; mais perto, fica: {3}",
   ],
   "window {0},{1} of {2} x {3}, polygons left: {4}; {5}": [
     "fereastra {0},{1} de {2} x {3}, poligoane rămase: {4}; {5}",
@@ -303,7 +306,7 @@ const PAGE = {
   algorithm: ["algoritm", "algorithme", "algoritmo"],
   why: ["de ce", "pourquoi", "porquê"],
   "{0} steps": ["{0} pași", "{0} étapes", "{0} passos"],
-  "facet {0}, depth {1}: {2} stays": ["fațeta {0}, adâncimea {1}: rămâne {2}", "facette {0}, profondeur {1} : {2} reste", "faceta {0}, profundidade {1}: fica {2}"],
+  "facet {0}, depth {1}: {2} stays": ["fațeta {0}, adâncimea {1}: se păstrează {2}", "facette {0}, profondeur {1} : {2} est gardée", "faceta {0}, profundidade {1}: fica {2}"],
   background: ["fundal", "fond", "fundo"],
   "Ask all algorithms": ["Întreabă toți algoritmii", "Interroger tous les algorithmes", "Perguntar a todos os algoritmos"],
   "Asking all algorithms…": ["Sunt întrebați toți algoritmii…", "On interroge tous les algorithmes…", "A perguntar a todos os algoritmos…"],
@@ -577,7 +580,6 @@ const PAGE = {
   "in the picture: inspect the pixel": ["în imagine: inspectează pixelul", "dans l’image : inspecter le pixel", "na imagem: inspecionar o píxel"],
   "in the picture: turn the camera": ["în imagine: rotește camera", "dans l’image : tourner la caméra", "na imagem: rodar a câmara"],
   "in the picture: zoom": ["în imagine: apropie, depărtează", "dans l’image : agrandir, réduire", "na imagem: aproximar, afastar"],
-  "close a dialog or a menu": ["închide un dialog sau un meniu", "fermer un dialogue ou un menu", "fechar um diálogo ou um menu"],
   "vitral Lab shows the classical algorithms of computer graphics step by step, on built-in scenes and on your own models.": [
     "vitral Lab arată pas cu pas algoritmii clasici ai graficii pe calculator, pe scene incluse și pe modelele dumneavoastră.",
     "vitral Lab montre pas à pas les algorithmes classiques de l’infographie, sur des scènes fournies et sur vos propres modèles.",
@@ -685,6 +687,36 @@ const PAGE = {
   "Inspect a pixel to see the depths round it.": ["Inspectați un pixel pentru adâncimile din jurul lui.", "Inspectez un pixel pour voir les profondeurs autour.", "Inspecione um píxel para ver as profundidades à volta."],
   "Inspect a pixel to see the depths of all facets over it.": ["Inspectați un pixel pentru adâncimile tuturor fațetelor de peste el.", "Inspectez un pixel pour voir les profondeurs de toutes ses facettes.", "Inspecione um píxel para ver as profundidades de todas as facetas sobre ele."],
   nearest: ["cea mai apropiată", "la plus proche", "a mais próxima"],
+  "edge on": ["pe muchie", "de profil", "de perfil"],
+  "faces the viewer": ["spre observator", "vers l’observateur", "virada para o observador"],
+  "faces away": ["în partea opusă", "tournée de l’autre côté", "virada para o outro lado"],
+  "V leads from the facet to the eye, N is its normal. A face with V·N < 0 is a back face: nobody sees it on a closed body.": [
+    "V duce de la fațetă la ochi, N este normala ei. O față cu V·N < 0 este o față spate: nimeni nu o vede pe un corp închis.",
+    "V va de la facette à l’œil, N est sa normale. Une face avec V·N < 0 est une face arrière : personne ne la voit sur un corps fermé.",
+    "V vai da faceta ao olho, N é a sua normal. Uma face com V·N < 0 é uma face traseira: ninguém a vê num corpo fechado.",
+  ],
+  "Depth cueing": ["Atenuare cu adâncimea", "Atténuation avec la profondeur", "Atenuação com a profundidade"],
+  "Depth cue": ["Indiciu de adâncime", "Indice de profondeur", "Indício de profundidade"],
+  "Depth cueing is off": ["Atenuarea cu adâncimea este oprită", "L’atténuation avec la profondeur est désactivée", "A atenuação com a profundidade está desligada"],
+  "Scale in front": ["Scara în față", "Échelle devant", "Escala à frente"],
+  "Scale behind": ["Scara în spate", "Échelle derrière", "Escala atrás"],
+  "s falls from the front plane to the back plane; I_dc is the background.": [
+    "s scade de la planul din față la cel din spate; I_dc este fundalul.",
+    "s décroît du plan avant au plan arrière ; I_dc est le fond.",
+    "s diminui do plano da frente ao de trás; I_dc é o fundo.",
+  ],
+  "Profile along the line": ["Profilul de-a lungul liniei", "Profil le long de la ligne", "Perfil ao longo da linha"],
+  "brightness of row {0}, 0 to 255; the mark is the inspected pixel": [
+    "luminozitatea rândului {0}, de la 0 la 255; semnul este pixelul inspectat",
+    "luminosité de la rangée {0}, de 0 à 255 ; la marque est le pixel inspecté",
+    "brilho da linha {0}, de 0 a 255; a marca é o píxel inspecionado",
+  ],
+  "Inspect a pixel to see how bright its row is.": [
+    "Inspectați un pixel pentru a vedea luminozitatea rândului său.",
+    "Inspectez un pixel pour voir la luminosité de sa rangée.",
+    "Inspecione um píxel para ver o brilho da sua linha.",
+  ],
+  "Value of {0}": ["Valoarea lui {0}", "Valeur de {0}", "Valor de {0}"],
 
   // Linked selection, drawings of structures, the second view.
   "Facet {0}": ["Fațeta {0}", "Facette {0}", "Faceta {0}"],
@@ -776,6 +808,6 @@ const PAGE = {
   "plane that divides space": ["plan care împarte spațiul", "plan qui divise l’espace", "plano que divide o espaço"],
   chosen: ["ales", "choisi", "escolhido"],
   "first {0} steps of more": ["primii {0} pași din mai mulți", "{0} premières étapes, il y en a d’autres", "primeiros {0} passos de mais"],
-} as const satisfies Record<string, readonly [string, string, string]>;
+} as const satisfies Record<string, readonly [string, string, string, string?]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

@@ -1,8 +1,8 @@
 // The page's texts in four languages.
 //
-// English texts are the keys of the table. What the engine tells in English is looked up there, too.
+// English texts are the keys of the table, or stand last in the row of a short key. What the engine
+// tells in English is looked up there as well.
 
-import packed from "lab-texts";
 import { inflated } from "./inflate.ts";
 import type { Language } from "./link.ts";
 import type { TABLE } from "./table.ts";
@@ -10,14 +10,20 @@ import type { TABLE } from "./table.ts";
 export type Key = keyof typeof TABLE;
 
 /** The table, once it is read. */
-let table: Record<string, readonly [string, string, string]> = {};
+let table: Record<string, readonly string[]> = {};
 
-/** Reads the table; until then all texts are English. */
+/** Reads the table from the page: JSON, deflated, in base64. Until then all texts are English. */
 export async function readTexts() {
-  table = JSON.parse(await inflated(packed).text()) as typeof table;
+  const packed = document.getElementById("lab-texts")?.textContent ?? "";
+  takeTexts(JSON.parse(await inflated(packed).text()) as string[][]);
 }
 
-const COLUMNS = { ro: 0, fr: 1, pt: 2 } as const;
+/** Takes a list of keys, then a list of their texts for each language. */
+export function takeTexts([keys = [], ...columns]: string[][]) {
+  table = Object.fromEntries(keys.map((key, i) => [key, columns.map((column) => column[i] ?? "")]));
+}
+
+const COLUMNS = { ro: 0, fr: 1, pt: 2, en: 3 } as const;
 
 let language: Language = "en";
 
@@ -28,9 +34,8 @@ export function setLanguage(to: Language) {
 export const isEnglish = () => language === "en";
 
 const lookUp = (text: string): string => {
-  if (language === "en") return text;
   const row = Object.hasOwn(table, text) ? table[text] : undefined;
-  return row?.[COLUMNS[language]] ?? text;
+  return row?.[COLUMNS[language]] || text;
 };
 
 /** A text of the table; `{0}`, `{1}`, … stand for the parts. */

@@ -28,7 +28,7 @@ for (const colorScheme of ["light", "dark"]) {
 }
 
 test("no language, layout, comparison has a violation", async (page) => {
-  for (const more of ["lang=ro", "lang=fr", "lang=pt", "layout=figure&step=3", "layout=slide&step=3", "compare=side", "compare=swipe", "compare=difference", "wrong=1"]) {
+  for (const more of ["lang=ro", "lang=fr", "lang=pt", "layout=figure&step=3", "layout=slide&step=3", "compare=side", "compare=swipe", "compare=blink", "compare=difference", "wrong=1"]) {
     await open(page, `${SMALL}&settings.visibility=painter&page=visibility&${more}`);
     await page.waitForTimeout(500);
     assert.deepEqual(await violations(page), [], more);

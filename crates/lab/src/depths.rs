@@ -6,9 +6,9 @@
 use crate::steps::Recording;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use vitral::explain::{FacetDepth, facets_over};
+use vitral::explain::{FacetDepth, facets_over, spaces};
 use vitral::internals::render::trace::Step;
-use vitral::{Error, Visibility};
+use vitral::{DVec3, Error, Visibility};
 
 /// Pixels along the square.
 const SIZE: u32 = 9;
@@ -39,9 +39,28 @@ pub(crate) fn depths(recording: &Recording, at: usize, pixel: [u32; 2]) -> Resul
         let there = |found: &&FacetDepth| came.get(&found.facet).is_some_and(|step| *step < limit);
         facets.iter().map(|over| over.iter().find(there).map_or(0.0, |found| found.depth)).collect()
     };
-    Ok(
-        json!({"x": corner[0], "y": corner[1], "size": SIZE, "before": nearest(at), "after": nearest(at + 1)}),
-    )
+    let slope = match drawn(&recording.watched.steps[at].step) {
+        Some(facet) => slope(&spaces(renderer, &camera, facet)?.screen),
+        None => None,
+    };
+    Ok(json!({
+        "x": corner[0],
+        "y": corner[1],
+        "size": SIZE,
+        "before": nearest(at),
+        "after": nearest(at + 1),
+        "slope": slope,
+    }))
+}
+
+/// How much depth changes from pixel to pixel in a plane `A x + B y + C z + D = 0` of the screen:
+/// `-A/C` along a line, `-B/C` from line to line; `None` for an edge-on plane.
+fn slope(corners: &[[f64; 3]]) -> Option<[f64; 2]> {
+    let [p, q, r] = [0, 1, 2].map(|i| corners.get(i).copied().map(DVec3::from_array));
+    let (p, q, r) = (p?, q?, r?);
+    let normal = (q - p).cross(r - p);
+    let slope = [-normal.x / normal.z, -normal.y / normal.z];
+    slope.iter().all(|v| v.is_finite()).then_some(slope)
 }
 
 /// The facet that a step drew.
@@ -49,5 +68,19 @@ fn drawn(step: &Step) -> Option<u32> {
     match step {
         Step::Drawn { facet, .. } => Some(*facet),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn p17_depth_changes_by_the_same_number_from_pixel_to_pixel() {
+        let plane = |x: f64, y: f64| [x, y, 0.5 + 0.01 * x - 0.02 * y];
+        let corners = [plane(1.0, 2.0), plane(8.0, 3.0), plane(4.0, 9.0)];
+        let [along, down] = slope(&corners).unwrap();
+        assert!((along - 0.01).abs() < 1e-12 && (down + 0.02).abs() < 1e-12);
+        assert_eq!(slope(&[[0.0; 3]; 3]), None);
     }
 }

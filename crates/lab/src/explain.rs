@@ -20,6 +20,7 @@ pub(crate) fn explain(renderer: &mut Renderer, pixel: [u32; 2]) -> Answer {
     let answer = json!({
         "explanation": as_json(&told)?,
         "lights": names,
+        "normals": told.normals,
         "why": why::why(&told, &names),
         "formula": formula::formula(&told, &names),
         "printed": printed::printed(&told, &lights, &names),

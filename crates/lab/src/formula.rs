@@ -30,8 +30,17 @@ fn identifier(name: &str, index: &str) -> String {
     }
 }
 
+/// A number with four significant digits.
 fn number(value: f32) -> String {
-    format!("<mn>{}</mn>", digits(value))
+    let decimals = match value.abs() {
+        v if v < 0.01 => 6,
+        v if v < 1.0 => 4,
+        v if v < 100.0 => 3,
+        _ => 1,
+    };
+    let text = format!("{value:.decimals$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    format!("<mn>{}</mn>", if matches!(text, "-0" | "") { "0" } else { text })
 }
 
 /// A number with six digits.
@@ -75,17 +84,35 @@ fn symbols(model: &str) -> String {
     )
 }
 
-/// The formula with the green channel's numbers.
+/// The formula with the green channel's numbers: each letter replaced by its value.
 fn numbers(evaluation: &Evaluation, told: &Explanation) -> String {
     const GREEN: usize = 1;
     let mut terms = vec![number(evaluation.ambient[GREEN])];
     for of_light in &evaluation.lights {
         let t = &of_light.terms;
+        let [ambient, diffuse, specular] = [t.ambient, t.diffuse, t.specular].map(|c| c[GREEN]);
+        let (CoefficientValues::Empirical { ka, kd, ks, shininess }, None) =
+            (&evaluation.coefficients, t.irradiance)
+        else {
+            // Microfacets and areas of light are integrals, whose values stand for them.
+            let sum = [ambient, diffuse, specular].map(number).join("<mo>+</mo>");
+            terms.push(format!("<mrow><mo>(</mo>{sum}<mo>)</mo></mrow>"));
+            continue;
+        };
+
+        // Write (Ia ka f + S f (Id kd N·L + Is ks cosⁿ)) with its numbers.
+        let [i_a, i_d, i_s] = t.colors.map(|color| number(color[GREEN]));
+        let times = |factors: &[String]| factors.join("<mo>·</mo>");
+        let ambient = times(&[i_a, number(ka[GREEN]), number(t.ambient_intensity)]);
+        let mut lit = times(&[i_d, number(kd[GREEN]), number(t.n_l)]);
+        if let Some(highlight) = t.highlight.filter(|_| ks[GREEN] > 0.0) {
+            let power =
+                format!("<msup>{}{}</msup>", number(highlight.cosine.max(0.0)), number(*shininess));
+            lit = format!("{lit}<mo>+</mo>{}", times(&[i_s, number(ks[GREEN]), power]));
+        }
+        let [s, f] = [number(t.visibility[GREEN]), number(t.intensity)];
         terms.push(format!(
-            "<mrow><mo>(</mo>{}<mo>+</mo>{}<mo>+</mo>{}<mo>)</mo></mrow>",
-            number(t.ambient[GREEN]),
-            number(t.diffuse[GREEN]),
-            number(t.specular[GREEN])
+            "<mrow><mo>(</mo>{ambient}<mo>+</mo>{s}<mo>·</mo>{f}<mo>·</mo><mo>(</mo>{lit}<mo>)</mo><mo>)</mo></mrow>"
         ));
     }
     let sum = evaluation.diffuse[GREEN] + evaluation.specular[GREEN];
@@ -141,8 +168,18 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
                 "base colour",
                 Some("materials.base-color".to_owned()),
             );
-            row("metallic".to_owned(), digits(metallic), "0 a dielectric, 1 a metal", None);
-            row("roughness".to_owned(), digits(roughness), "roughness of the surface", None);
+            row(
+                "metallic".to_owned(),
+                digits(metallic),
+                "0 a dielectric, 1 a metal",
+                Some("materials.metallic".to_owned()),
+            );
+            row(
+                "roughness".to_owned(),
+                digits(roughness),
+                "roughness of the surface",
+                Some("materials.roughness".to_owned()),
+            );
             row("occlusion".to_owned(), digits(occlusion), "how much ambient light arrives", None);
         }
     }
@@ -209,6 +246,12 @@ fn light_values(
             Some(_) => ("R·V", "cosine between the mirrored light and the viewer"),
             None => ("N·H", "cosine between the normal and the halfway vector"),
         };
+        if let Some(r) = highlight.r {
+            of("R", three(r), "2 N (N·L) - L: the mirrored light, a unit vector, view space");
+        }
+        if let Some(h) = highlight.h {
+            of("H", three(h), "halfway between L and V, a unit vector, view space");
+        }
         of(symbol, digits(highlight.cosine), meaning);
         of("lobe", digits(highlight.lobe), "that cosine to the power n, or the microfacets' lobe");
     }

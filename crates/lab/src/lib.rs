@@ -23,6 +23,8 @@
 //! | `steps` | the words and numbers of many steps |
 //! | `structure` | the structure that the algorithm built, as SVG |
 //! | `overview` | the scene from outside, with the view volume, boxes and lights as SVG |
+//! | `facets` | what facets belong to, and their outlines in the picture |
+//! | `highlight` | the centroid of a light's highlight, and its mirror point |
 //! | `explain`, `ask-all` | a pixel: its surfaces, its light, the formula with its numbers |
 //! | `compare`, `compare-all` | two states; all visibility algorithms |
 //! | `bench` | seconds of several pictures |
@@ -43,8 +45,10 @@ mod curve;
 mod depths;
 mod exercises;
 mod explain;
+mod facets;
 mod files;
 mod formula;
+mod highlight;
 mod message;
 mod overlay;
 mod overview;
@@ -153,9 +157,13 @@ impl Lab {
             }
 
             // Look at the camera from outside, or explain a pixel.
-            Want::Overview { second } => {
-                overview::overview(stage.show(&state, files)?, second.as_deref())
+            Want::Overview { second, pixel, number } => {
+                let step = recordings.step(&state, number);
+                let asked = overview::Asked { second: second.as_deref(), pixel, step };
+                overview::overview(stage.show(&state, files)?, &asked)
             }
+            Want::Facets { facets } => facets::facets(stage.show(&state, files)?, &facets),
+            Want::Highlight { light } => highlight::highlight(stage.show(&state, files)?, light),
             Want::Explain { pixel } => explain::explain(stage.show(&state, files)?, pixel),
             Want::AskAll { pixel } => explain::ask_all(stage.show(&state, files)?, pixel),
 

@@ -38,7 +38,7 @@ pub(crate) enum Curve {
 }
 
 /// The names of all requests.
-pub(crate) const WANTS: [&str; 19] = [
+pub(crate) const WANTS: [&str; 21] = [
     "catalog",
     "files",
     "complete",
@@ -48,6 +48,8 @@ pub(crate) const WANTS: [&str; 19] = [
     "steps",
     "structure",
     "overview",
+    "facets",
+    "highlight",
     "explain",
     "ask-all",
     "compare",
@@ -95,6 +97,17 @@ pub(crate) enum Want {
     Structure,
     Overview {
         second: Option<Box<Viewpoint>>,
+        /// The pixel whose rays are drawn.
+        pixel: Option<[u32; 2]>,
+        /// The step, counted from 1 among all, whose planes are drawn.
+        number: Option<u32>,
+    },
+    Facets {
+        facets: Vec<u32>,
+    },
+    Highlight {
+        /// The light's number.
+        light: usize,
     },
     Explain {
         pixel: [u32; 2],

@@ -3,9 +3,9 @@
 use crate::answer::Answer;
 use crate::projector::projector;
 use serde_json::{Value, json};
-use vitral::explain::{Deciders, FacetSpaces, explain, spaces};
+use vitral::explain::{Deciders, FacetSpaces, Overlying, explain, spaces};
 use vitral::info::info_on;
-use vitral::{Error, Renderer};
+use vitral::{Camera, Error, Projection, Renderer};
 
 /// The stages with their input and output; for the facet that is seen at a pixel, its corners in
 /// each space.
@@ -17,10 +17,12 @@ pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer
     renderer.recycle(picture);
 
     // Bring the corners of the facet at the pixel through all spaces.
-    let mut answer =
-        json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null});
+    let mut answer = json!({"stages": rows(&stats), "facet": null, "spaces": null, "projector": null, "faces": []});
     if let Some(pixel) = pixel {
-        let surfaces = explain(renderer, &camera, pixel, &Deciders::Chosen, None)?.surfaces;
+        let explained = explain(renderer, &camera, pixel, &Deciders::Chosen, None)?;
+        answer["faces"] =
+            explained.candidates.iter().map(|c| facing(renderer, &camera, c)).collect();
+        let surfaces = explained.surfaces;
         if let Some(nearest) = surfaces.first() {
             answer["facet"] = json!(nearest.facet);
             answer["spaces"] = rows_of(&spaces(renderer, &camera, nearest.facet)?);
@@ -28,6 +30,24 @@ pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer
         answer["projector"] = projector(renderer, &camera, pixel, &surfaces);
     }
     Ok((answer, Vec::new()))
+}
+
+/// `V·N` of a facet: V from its middle to the eye, N its normal, both unit (P14).
+fn facing(renderer: &Renderer, camera: &Camera, over: &Overlying) -> Value {
+    let facet = over.candidate.facet;
+    let [a, b, c] = renderer.world().corners_of_facet(facet);
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let to_eye = match camera.projection {
+        Projection::Parallel { .. } => camera.position - camera.focal_point,
+        _ => camera.position - (a + b + c) / 3.0,
+    };
+    json!({
+        "facet": facet,
+        "surface": over.surface,
+        "mesh": over.mesh,
+        "fate": over.candidate.fate,
+        "v-n": to_eye.normalize_or_zero().dot(normal),
+    })
 }
 
 /// For each space a row for each corner.

@@ -12,8 +12,9 @@ use vitral::internals::render::trace::replay::{Replay, WatchedSteps};
 use vitral::internals::render::trace::structure::drawer;
 use vitral::{Error, Renderer, State};
 
-/// Bytes that the steps of a recording may take.
-const MOST_BYTES: u64 = 512 << 20;
+/// Bytes that the steps of a recording may take: the first that fit are kept. Ordering them takes
+/// twice as much for a moment, of the 4 GiB that WebAssembly can address.
+const MOST_BYTES: u64 = 320 << 20;
 /// Steps that come at once.
 const MOST_STEPS: u32 = 20_000;
 /// Members of a list that come with one of many steps.
@@ -30,6 +31,16 @@ pub(crate) struct Asked<'a> {
 /// The steps that were recorded last, of both states of a comparison.
 #[derive(Default)]
 pub(crate) struct Recordings(Vec<Recording>);
+
+impl Recordings {
+    /// The step of this number, counted from 1 among all, where the state's steps are kept.
+    pub(crate) fn step(&self, state: &State, number: Option<u32>) -> Option<&Step> {
+        let key = state.to_json();
+        let recording = self.0.iter().find(|recording| recording.key == key)?;
+        let at = number?.checked_sub(1)? as usize;
+        recording.watched.steps.get(at).map(|numbered| &numbered.step)
+    }
+}
 
 /// Recordings that are kept.
 const MOST_RECORDINGS: usize = 2;
@@ -52,10 +63,8 @@ impl Recording {
     fn new(stage: &Stage, files: &Files, state: &State, key: String) -> Result<Self, Error> {
         // Let a renderer that knows nothing tell all that there is to do.
         let mut renderer = stage.renderer(state, files)?;
-        let budget = &mut renderer.execution_mut().budget;
-        *budget = budget.renewed().with_memory_limit(Some(MOST_BYTES));
         let camera = renderer.frame_camera();
-        let mut watched = renderer.watch_steps(&camera)?;
+        let mut watched = renderer.watch_first_steps(&camera, MOST_BYTES)?;
         let seconds = renderer.execution().budget.elapsed();
 
         // Take the colours of what is decided from the finished picture, with all its samples.
@@ -135,6 +144,7 @@ pub(crate) fn record(asked: &Asked<'_>, kept: &mut Recordings) -> Answer {
         .transpose()?;
     let answer = json!({
         "steps": recording.watched.steps.len(),
+        "more": recording.watched.more,
         "groups": groups,
         "at-pixel": about,
         "seconds": recording.seconds,
@@ -173,7 +183,7 @@ pub(crate) fn step(
         "group": recording.groups[usize::from(recording.kinds[at as usize])],
         "words": words(&numbered.step, asked.pixel),
         "fields": numbered.step,
-        "drawing": overlay::drawing(&numbered.step, decided.width(), decided.height()),
+        "drawing": overlay::drawing(recording, at as usize)?,
         "width": decided.width(),
         "height": decided.height(),
         "depths": asked.pixel.map(|pixel| depths(recording, at as usize, pixel)).transpose()?,

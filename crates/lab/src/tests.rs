@@ -377,3 +377,94 @@ fn own_files_are_models() {
     );
     assert_eq!(picture["facts"]["triangles"], 1);
 }
+
+#[test]
+fn facets_tell_what_they_belong_to_and_where_they_are() {
+    let mut lab = Lab::default();
+    let state = small("builtin:cubs", json!({}));
+    let (told, _) = ask(&mut lab, json!({"want": "facets", "state": state, "facets": [0, 1, 5]}));
+    let facets = told["facets"].as_array().unwrap();
+    assert_eq!(facets.len(), 3);
+    assert_eq!([&facets[0]["surface"], &facets[1]["surface"]], [0, 0], "two halves of a square");
+    let outlines = facets.iter().map(|facet| facet["outline"].as_array().unwrap().len());
+    assert!(outlines.clone().any(|corners| corners >= 3), "{told}");
+    let far = json!({"want": "facets", "state": state, "facets": [100_000]});
+    assert!(error(&mut lab, far).contains("no facet 100000"));
+}
+
+#[test]
+fn l20_a_highlight_lies_where_its_light_is_mirrored() {
+    let mut lab = Lab::default();
+    let mut state = small("builtin:sphere", json!({"width": 160, "height": 120}));
+    let (told, _) = ask(&mut lab, json!({"want": "highlight", "state": state, "light": 0}));
+    let [centroid, mirror] = ["centroid", "mirror"]
+        .map(|name| [0, 1].map(|k| told[name][k].as_f64().unwrap_or_else(|| panic!("{told}"))));
+    let apart = (centroid[0] - mirror[0]).hypot(centroid[1] - mirror[1]);
+    assert!(apart < 6.0, "{told}");
+
+    // Ambient light comes from nowhere.
+    state["lights"] = json!([{"name": "LIGHT0", "kind": {"type": "ambient"}}]);
+    let (told, _) = ask(&mut lab, json!({"want": "highlight", "state": state, "light": 0}));
+    assert!(told["mirror"].is_null() && told["centroid"].is_null(), "{told}");
+    let none = json!({"want": "highlight", "state": state, "light": 9});
+    assert!(error(&mut lab, none).contains("no light 9"));
+}
+
+#[test]
+fn steps_about_polygons_show_their_outlines() {
+    let mut lab = Lab::default();
+    let shapes = |lab: &mut Lab, algorithm: &str, group: &str| {
+        let state = small("builtin:cubs", json!({"visibility": algorithm}));
+        let (told, _) = ask(lab, json!({"want": "record", "state": state}));
+        let groups = told["groups"].as_array().unwrap();
+        let count = groups.iter().find(|g| g["name"] == group).unwrap()["count"].as_u64().unwrap();
+        let step = |number: u64| {
+            let step = json!({"want": "step", "state": state, "number": number, "show": group});
+            ask(lab, step).0["drawing"].as_str().unwrap().to_owned()
+        };
+        (1..=count).map(step).collect::<String>()
+    };
+    let compared = shapes(&mut lab, "painter", "compared");
+    for class in ["\"p\"", "\"q\"", "\"extent p\"", "\"extent q\""] {
+        assert!(compared.contains(&format!("class={class}")), "{class} in {compared}");
+    }
+    assert!(shapes(&mut lab, "bsp", "tree-node").contains(r#"class="splitter""#));
+    assert!(shapes(&mut lab, "weiler-atherton", "clip").contains(r#"class="clip" data-facet="#));
+}
+
+#[test]
+fn the_second_view_shows_the_rays_of_a_pixel_and_planes_of_a_tree() {
+    let mut lab = Lab::default();
+    let state = small("builtin:cubs", json!({"visibility": "bsp"}));
+    ask(&mut lab, json!({"want": "record", "state": state}));
+    let (first, _) =
+        ask(&mut lab, json!({"want": "step", "state": state, "number": 1, "show": "tree-node"}));
+    let request =
+        json!({"want": "overview", "state": state, "pixel": [24, 20], "number": first["at"]});
+    let (told, _) = ask(&mut lab, request);
+    let svg = told["drawing"].as_str().unwrap();
+    for class in ["ray", "light-ray", "plane"] {
+        assert!(svg.contains(&format!(r#"class="{class}""#)), "{class} in {svg}");
+    }
+}
+
+#[test]
+fn normals_at_the_corners_and_all_lines_of_a_facet_are_told() {
+    let mut lab = Lab::default();
+    let state = small("builtin:sphere", json!({"shading": "gouraud"}));
+    let (told, _) = ask(&mut lab, json!({"want": "explain", "state": state, "pixel": [24, 18]}));
+    let normals = told["normals"].as_array().unwrap();
+    assert_eq!(normals.len(), 3);
+    assert!(normals.iter().all(|corner| corner["faces"].as_array().unwrap().len() >= 3));
+    let lines = told["explanation"]["gouraud"]["lines"].as_array().unwrap();
+    assert!(lines.iter().any(|line| line["row"] == 18), "{lines:?}");
+
+    // The mirrored light is a unit vector (P38).
+    let values = told["formula"]["values"].as_array().unwrap();
+    if let Some(r) = values.iter().find(|row| row["symbol"].as_str().unwrap().starts_with("R (")) {
+        let text = r["value"].as_str().unwrap();
+        let length: f64 =
+            text.split(' ').map(|c| c.parse::<f64>().unwrap().powi(2)).sum::<f64>().sqrt();
+        assert!((length - 1.0).abs() < 1e-5, "{text}");
+    }
+}

@@ -10,10 +10,14 @@
 //! the whole picture. Whole pictures are made for algorithms that are asked for by name
 //! ([`Deciders::Named`]), and where translucent materials are in view.
 
+mod corner_normals;
+mod gouraud;
 mod spaces;
 mod text;
 
-pub use spaces::{FacetSpaces, spaces};
+pub use corner_normals::{CornerNormal, NormalOfFace, corner_normals};
+pub use gouraud::{Gouraud, GouraudEdge, GouraudLine};
+pub use spaces::{FacetSpaces, facet_outlines, spaces};
 
 use crate::bench::Entrant;
 use crate::{Error, Renderer};
@@ -22,7 +26,6 @@ use std::sync::{Arc, Mutex};
 use vitral_exec::Budget;
 use vitral_raster::{NO_FACET, SUBPIXEL, SamplePattern, TILE, TileGrid};
 use vitral_render::registry::VISIBILITY;
-use vitral_render::shading::gouraud::{EdgeStep, ScreenIntensity, scan_convert};
 use vitral_render::shading::pixel_light::PixelLight;
 use vitral_render::stats::CullCounters;
 use vitral_render::trace::{Observer, Step, Way};
@@ -30,7 +33,7 @@ use vitral_render::visible::NullSink;
 use vitral_render::visible::fates::{Candidate, facets_at};
 use vitral_render::{
     Channels, ExaminedPixel, Execution, Global, PreparedView, Session, Settings, Shading,
-    examine_pixel, illuminate_corners,
+    examine_pixel,
 };
 use vitral_scene::Camera;
 
@@ -55,6 +58,8 @@ pub struct Explanation {
     pub light: PixelLight,
     /// The surfaces that cover its centre, the nearest first.
     pub surfaces: Vec<Surface>,
+    /// The normals at the corners of the nearest surface's facet; empty on the background.
+    pub normals: Vec<CornerNormal>,
     /// How Gouraud's shading gets the nearest surface's intensity, with that shading.
     pub gouraud: Option<Gouraud>,
     /// What algorithms decided.
@@ -139,45 +144,6 @@ pub struct Turn {
     pub direction: [f64; 3],
     /// How red, green and blue of what it will meet count in the pixel.
     pub weight: [f32; 3],
-}
-
-/// How scan conversion interpolates intensities by increments, on the screen (L9). The picture
-/// weighs the corners directly, in perspective unless interpolation is linear, and multiplies with
-/// textures at the pixel rather than at the corners.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct Gouraud {
-    /// Id of the facet, counted over all instances.
-    pub facet: u32,
-    /// Its corners in pixels.
-    pub corners: [[f64; 2]; 3],
-    /// Their intensities: premultiplied RGB, linear, or the course's numbers in the raw colour
-    /// space.
-    pub intensities: [[f64; 3]; 3],
-    /// The edges left and right of the pixel.
-    pub edges: [GouraudEdge; 2],
-    /// Change of intensity from pixel to pixel along the span.
-    pub px: [f64; 3],
-    /// Additions of `px` from the span's first pixel to this one.
-    pub additions: u32,
-    /// The intensity that they give.
-    pub intensity: [f64; 3],
-    /// The intensity by the corners' weights on the screen.
-    pub direct: [f64; 3],
-}
-
-/// An edge of a [`Gouraud`]-shaded facet on a scan line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct GouraudEdge {
-    /// The corner above, and the one below.
-    pub corners: [usize; 2],
-    /// Change of intensity from line to line.
-    pub py: [f64; 3],
-    /// Where it crosses the line through the pixel's middle, in pixels.
-    pub x: f64,
-    /// The intensity there.
-    pub intensity: [f64; 3],
 }
 
 /// A facet over the pixel's centre.
@@ -292,8 +258,11 @@ pub fn explain(
 
     // Find the surfaces over the pixel's centre, and interpolate Gouraud's colours on the nearest.
     let surfaces = surfaces(renderer, camera, pixel)?;
+    let normals = surfaces.first().map(|s| corner_normals(renderer, s.facet)).transpose()?;
+    let normals = normals.map_or(Vec::new(), Vec::from);
     let nearest = surfaces.first().filter(|_| settings.shading.model == Shading::Gouraud);
-    let gouraud = nearest.map_or(Ok(None), |s| gouraud(renderer, camera, pixel, s.facet))?;
+    let gouraud =
+        nearest.map_or(Ok(None), |s| gouraud::gouraud(renderer, camera, pixel, s.facet))?;
 
     // Let each algorithm decide the pixel.
     let (entrants, tile_only) = match deciders {
@@ -319,7 +288,7 @@ pub fn explain(
     };
     let ExaminedPixel { candidates, light, bytes } = examined;
     let candidates = candidates.into_iter().map(overlying).collect();
-    Ok(Explanation { pixel, bytes, candidates, light, surfaces, gouraud, decisions, rays })
+    Ok(Explanation { pixel, bytes, candidates, light, surfaces, normals, gouraud, decisions, rays })
 }
 
 /// The algorithm that the settings choose.
@@ -389,6 +358,28 @@ fn met(session: &Session, facet: u32, distance: f64) -> MetSurface {
     MetSurface { facet, surface, mesh, material, distance }
 }
 
+/// What a facet belongs to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct FacetNames {
+    /// The face of the file that it is of, as in the channel `id`.
+    pub surface: u32,
+    /// Name of its mesh.
+    pub mesh: String,
+    /// Name of its material, if it has one.
+    pub material: Option<String>,
+}
+
+/// What a facet belongs to.
+///
+/// # Errors
+/// A facet that the scene has not.
+pub fn facet_names(renderer: &Renderer, facet: u32) -> Result<FacetNames, Error> {
+    spaces::check_facet(renderer.world(), facet)?;
+    let (surface, mesh, material) = named(renderer.session(), facet);
+    Ok(FacetNames { surface, mesh, material })
+}
+
 /// The face of a facet, and the names of its mesh and material.
 fn named(session: &Session, facet: u32) -> (u32, String, Option<String>) {
     let world = session.world();
@@ -449,61 +440,6 @@ fn surfaces(renderer: &Renderer, camera: &Camera, pixel: [u32; 2]) -> Result<Vec
         Surface { facet, surface, mesh, material, depth, layer }
     };
     Ok(facets_at(&view, center(&view, pixel)).into_iter().map(surface).collect())
-}
-
-/// Scan converts a facet; `None` if a clipping plane cuts it, so that its corners are not all on
-/// the screen.
-fn gouraud(
-    renderer: &Renderer,
-    camera: &Camera,
-    [column, row]: [u32; 2],
-    facet: u32,
-) -> Result<Option<Gouraud>, Error> {
-    let (settings, session, execution) =
-        (&renderer.picture_settings(), renderer.session(), renderer.execution());
-    let view = renderer.prepared(camera, &mut CullCounters::default())?;
-    let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
-    let lights = renderer.frame_lights(camera);
-    let shot = renderer.shot(camera, &lights);
-    let lit = illuminate_corners(session, &shot, settings, execution, Some(facet))?;
-    let corner = |i: usize| {
-        let snapped = view.screen.transform().project(clip[i]);
-        let [r, g, b, _] = lit[i].color.map(f64::from);
-        let at = [snapped.x, snapped.y].map(|v| f64::from(v) / f64::from(SUBPIXEL));
-        ScreenIntensity { at, intensity: [r, g, b] }
-    };
-    let corners = [corner(0), corner(1), corner(2)];
-    let mut found = None;
-    scan_convert(&corners, |span, x, intensity| {
-        if (x, span.row) == (i64::from(column), i64::from(row)) {
-            found = Some((*span, intensity));
-        }
-    });
-    // Edges and samples are decided in integers elsewhere: a pixel on an edge may belong to a
-    // neighbour here.
-    let Some((span, intensity)) = found else { return Ok(None) };
-    let edge =
-        |e: EdgeStep| GouraudEdge { corners: e.ends, py: e.py, x: e.x, intensity: e.intensity };
-    Ok(Some(Gouraud {
-        facet,
-        corners: corners.map(|c| c.at),
-        intensities: corners.map(|c| c.intensity),
-        edges: [span.left, span.right].map(edge),
-        px: span.px,
-        additions: (i64::from(column) - span.pixels[0]) as u32,
-        intensity,
-        direct: weighted(&corners, [f64::from(column) + 0.5, f64::from(row) + 0.5]),
-    }))
-}
-
-/// The intensity at a place by the weights of the corners.
-fn weighted(corners: &[ScreenIntensity; 3], place: [f64; 2]) -> [f64; 3] {
-    let area = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
-        (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
-    };
-    let [a, b, c] = corners.map(|c| c.at);
-    let (whole, parts) = (area(a, b, c), [area(place, b, c), area(a, place, c), area(a, b, place)]);
-    [0, 1, 2].map(|k| (0..3).map(|i| parts[i] / whole * corners[i].intensity[k]).sum())
 }
 
 /// The place of a pixel's sample, 1/256 pixel.
@@ -596,47 +532,5 @@ mod tests {
         let nothing = explain(&renderer, &camera, [0, 0], &Deciders::Chosen, None).unwrap();
         assert!(nothing.surfaces.is_empty() && nothing.decisions.iter().all(|d| d.facet.is_none()));
         assert!(explain(&renderer, &camera, [64, 0], &Deciders::Chosen, None).is_err());
-    }
-
-    #[test]
-    fn l9_increments_of_a_pixel_lead_to_its_intensity() {
-        let mut renderer = Renderer::new(load_builtin("teapot").unwrap()).unwrap();
-        let settings = &mut renderer.settings;
-        (settings.picture.width, settings.picture.height, settings.picture.samples) = (64, 48, 1);
-        settings.shading.model = Shading::Gouraud;
-        settings.shading.interpolation = vitral_render::Interpolation::Linear;
-        settings.picture.color_space = vitral_render::ColorSpace::Raw;
-        let camera = renderer.frame_camera();
-        let picture = renderer.render().unwrap().frame.color.unwrap();
-        let mut explained = 0;
-        for pixel in [[20, 24], [26, 30], [32, 26], [38, 28], [44, 22]] {
-            let told = explain(&renderer, &camera, pixel, &Deciders::Chosen, None).unwrap();
-            let Some(g) = &told.gouraud else { continue };
-            explained += 1;
-            let [left, right] = &g.edges;
-            let from_left = f64::from(pixel[0]) + 0.5 - left.x;
-            for k in 0..3 {
-                assert!((g.intensity[k] - g.direct[k]).abs() < 1e-6, "{told}");
-                let px = (right.intensity[k] - left.intensity[k]) / (right.x - left.x);
-                assert!(
-                    (g.px[k] - px).abs() < 1e-9
-                        && (left.intensity[k] + px * from_left - g.intensity[k]).abs() < 1e-9
-                );
-                let shown = f64::from(picture.at(pixel[0], pixel[1])[k]);
-                assert!(
-                    (shown - 255.0 * g.intensity[k].clamp(0.0, 1.0)).abs() < 0.6,
-                    "{shown} of {told}"
-                );
-            }
-            assert!(told.to_string().contains(&format!("Gouraud shading of facet {}", g.facet)));
-        }
-        assert!(explained >= 3);
-        renderer.settings.shading.model = Shading::Phong;
-        assert!(
-            explain(&renderer, &camera, [32, 26], &Deciders::Chosen, None)
-                .unwrap()
-                .gouraud
-                .is_none()
-        );
     }
 }

@@ -548,6 +548,22 @@ impl Renderer {
         Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution, None)?)
     }
 
+    /// [`Self::watch_steps`] that keeps the first steps, those that take no more than `most_bytes`
+    /// of memory, and says whether more followed.
+    ///
+    /// # Errors
+    /// As [`render`](Self::render).
+    pub fn watch_first_steps(
+        &mut self,
+        camera: &Camera,
+        most_bytes: u64,
+    ) -> Result<WatchedSteps, Error> {
+        let lights = self.frame_lights(camera);
+        let shot = self.shot(camera, &lights);
+        let (session, execution) = (&mut self.session, &self.execution);
+        Ok(watch_steps(session, &shot, &self.settings, execution, Some(most_bytes))?)
+    }
+
     /// The facets of the view from `camera`, culled and ready for the screen, with one sample a
     /// pixel, at its centre.
     ///

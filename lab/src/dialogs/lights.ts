@@ -2,7 +2,7 @@
 
 import { html, nothing, type TemplateResult } from "lit-html";
 import type { App } from "../app.ts";
-import { isObject, type JsonObject } from "../json.ts";
+import { isObject, type Json, type JsonObject } from "../json.ts";
 import {
   addLight,
   attenuationOf,
@@ -17,7 +17,9 @@ import {
   setKind,
   setKindField,
   setPlace,
+  setShape,
   setSwitch,
+  spans,
 } from "../lights.ts";
 import { button, check, combo, group, spin } from "../parts/fields.ts";
 import { t, type Key } from "../words.ts";
@@ -53,19 +55,23 @@ function content(app: App): unknown {
     app.lightNumber = Number(v.slice(5));
     app.draftPlace = null;
     app.changed();
-  });
+  }, { term: "Light Number" });
   const buttons = html`<div class="buttons">
     ${button(t("Add light"), () => addLight(app))} ${light ? button(t("Remove light"), () => removeLight(app, number)) : nothing}
     ${button(t("Reset"), () => resetLights(app))}
   </div>`;
-  return html`<div class="row-of-fields">${choice}</div>
+  const kind = light && isObject(light["kind"]) ? String(light["kind"]["type"]) : "";
+  const kinds = KINDS.map((k) => ({ value: k, text: t(KIND_NAMES[k]) }));
+  return html`<div class="rows">
+      ${choice} ${light ? combo(t("Kind"), kind, kinds, (v) => setKind(app, number, v), { term: "Kind" }) : nothing}
+    </div>
     ${light ? fields(app, light, number) : html`<p class="note">${t("No light shines.")}</p>`} ${buttons}`;
 }
 
 function fields(app: App, light: JsonObject, number: number): unknown {
   const kind = isObject(light["kind"]) ? light["kind"] : {};
   const type = String(kind["type"]);
-  const color = (name: Key, field: "ambient" | "diffuse" | "specular") => {
+  const color = (name: "Ambient" | "Diffuse" | "Specular", field: "ambient" | "diffuse" | "specular") => {
     const values = (light[field] as number[] | undefined) ?? [0, 0, 0];
     return group(
       t(name),
@@ -77,6 +83,7 @@ function fields(app: App, light: JsonObject, number: number): unknown {
         }),
       ),
       "in-row",
+      name,
     );
   };
   const draft = app.draftPlace?.light === number ? app.draftPlace.place : null;
@@ -95,17 +102,17 @@ function fields(app: App, light: JsonObject, number: number): unknown {
   };
   const isSpot = type === "spot";
   const direction = isSpot ? ((kind["direction"] as number[] | undefined) ?? [0, 0, -1]) : null;
-  return html`<div class="row-of-fields">
-      ${check(t("Enabled"), light["enabled"] !== false, (on) => setSwitch(app, number, "enabled", on))}
-      ${check(t("Casts shadow"), light["shadow"] !== false, (on) => setSwitch(app, number, "shadow", on))}
-      ${combo(t("Kind"), type, KINDS.map((k) => ({ value: k, text: t(KIND_NAMES[k]) })), (v) => setKind(app, number, v))}
+  return html`<div class="checks">
+      ${check(t("Enabled"), light["enabled"] !== false, (on) => setSwitch(app, number, "enabled", on), { term: "Enabled" })}
+      ${check(t("Casts shadow"), light["shadow"] !== false, (on) => setSwitch(app, number, "shadow", on), { term: "Casts shadow" })}
     </div>
     ${color("Ambient", "ambient")} ${color("Diffuse", "diffuse")} ${color("Specular", "specular")}
     ${place
       ? group(
           t("Position"),
           ["x", "y", "z", "w"].map((name, i) => spin(name, place[i] ?? 0, axis(i), { name: t(`Position ${name}` as Key), step: 0.5 })),
-          "in-row",
+          "pairs",
+          "Position",
         )
       : nothing}
     ${draft ? html`<p class="note">${t("A direction needs a length: x, y or z other than 0.")}</p>` : nothing}
@@ -125,14 +132,17 @@ function fields(app: App, light: JsonObject, number: number): unknown {
             ),
           ),
           "in-row",
+          "Direction",
         )
       : nothing}
+    ${type === "area" ? shapeFields(app, kind, number) : nothing}
     <div class="in-row">
-      ${spin(t("Cutoff"), degrees(kind["cutoff"]), setCutoff, { min: 0.1, max: 90, step: 1, reason: only(isSpot) })}
+      ${spin(t("Cutoff"), degrees(kind["cutoff"]), setCutoff, { min: 0.1, max: 90, step: 1, reason: only(isSpot), term: "Cutoff" })}
       ${spin(t("Exponent"), typeof kind["exponent"] === "number" ? kind["exponent"] : null, (v) => setKindField(app, number, { exponent: v }), {
         min: 0,
         step: 1,
         reason: only(isSpot),
+        term: "Exponent",
       })}
     </div>
     ${group(
@@ -141,8 +151,42 @@ function fields(app: App, light: JsonObject, number: number): unknown {
         spin(name, c[i] ?? 0, (v) => setAttenuation(app, number, i, v), { name: t(`Attenuation ${name}` as Key), min: 0, step: 0.05 }),
       ),
       "in-row",
+      "Attenuation",
     )}
     ${(isObject(light["attenuation"]) ? light["attenuation"]["form"] : "none") !== "none"
       ? button(t("No attenuation"), () => setField(app, number, "attenuation", { form: "none" }, "none"))
       : nothing}`;
+}
+
+const vector = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : [0, 0, 0]);
+
+/** The outline of an area light: a disc's centre, normal and radius, or a polygon's corners. */
+function shapeFields(app: App, kind: JsonObject, number: number): unknown {
+  const shape = isObject(kind["shape"]) ? kind["shape"] : {};
+  const isDisc = shape["shape"] === "disc";
+  const set = (fields: JsonObject) => setKindField(app, number, { shape: { ...shape, ...fields } });
+  const three = (label: string, name: (axis: string) => string, values: number[], change: (to: number[]) => void, step: number) =>
+    group(
+      label,
+      ["x", "y", "z"].map((axis, i) => spin(axis, values[i] ?? 0, (v) => change(values.map((old, k) => (k === i ? v : old))), { name: name(axis), step })),
+      "in-row",
+    );
+  const options = [
+    { value: "disc", text: t("Disc") },
+    { value: "polygon", text: t("Rectangle") },
+  ];
+  const corners = Array.isArray(shape["corners"]) ? shape["corners"].map(vector) : [];
+  const setCorner = (at: number) => (to: number[]) => {
+    const all = corners.map((c, i) => (i === at ? to : c));
+    // Corners on one line span no surface.
+    if (spans(all)) set({ corners: all });
+  };
+  return html`<div class="in-row">
+      ${combo(t("Shape"), isDisc ? "disc" : "polygon", options, (v) => setShape(app, number, v as "disc" | "polygon"), { term: "Shape" })}
+      ${isDisc ? spin(t("Radius"), Number(shape["radius"] ?? 1), (v) => set({ radius: v }), { min: 0.001, step: 0.1 }) : nothing}
+    </div>
+    ${isDisc
+      ? html`${three(t("Centre"), (axis) => t("Centre {0}", axis), vector(shape["center"]), (to) => set({ center: to }), 0.5)}
+        ${three(t("Normal"), (axis) => t("Normal {0}", axis), vector(shape["normal"]), (to) => to.some((v) => v !== 0) && set({ normal: to }), 0.1)}`
+      : corners.map((c, i) => three(t("Corner {0}", i + 1), (axis) => t("Corner {0} {1}", i + 1, axis), c, setCorner(i), 0.5))}`;
 }

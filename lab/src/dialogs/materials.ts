@@ -5,6 +5,7 @@ import type { App } from "../app.ts";
 import type { JsonObject } from "../json.ts";
 import { propertyOf, setMaterial } from "../materials.ts";
 import { button, check, combo, group, spin } from "../parts/fields.ts";
+import type { Term } from "../parts/what.ts";
 import { t, type Key } from "../words.ts";
 import { dialog } from "./dialog.ts";
 import { CHANNELS } from "./lights.ts";
@@ -19,11 +20,11 @@ function content(app: App): unknown {
   const number = Math.min(app.materialNumber, materials.length - 1);
   const material = materials[number]!;
   const options = materials.map((m, i) => ({ value: String(i), text: String(m["name"] || "default") }));
-  return html`<div class="row-of-fields">
+  return html`<div class="rows">
       ${combo(t("Material"), String(number), options, (v) => {
         app.materialNumber = Number(v);
         app.changed();
-      })}
+      }, { term: "Material" })}
     </div>
     ${fields(app, material)}
     <div class="buttons">${button(t("Reset"), () => app.set({ materials: [] }))}</div>`;
@@ -50,11 +51,13 @@ function fields(app: App, material: JsonObject): unknown {
         ),
       ),
       "in-row",
+      property,
+      property,
     );
   };
-  const number = (label: Key, property: string, range: { min?: number; max?: number; step?: number }) => {
+  const number = (label: Key & Term, property: string, range: { min?: number; max?: number; step?: number }) => {
     const value = propertyOf(material, property);
-    return typeof value === "number" ? spin(t(label), value, set(property), range) : nothing;
+    return typeof value === "number" ? spin(t(label), value, set(property), { ...range, term: label }) : nothing;
   };
   const transmission = propertyOf(material, "transmission");
   const mirror = propertyOf(material, "mirror");
@@ -64,8 +67,8 @@ function fields(app: App, material: JsonObject): unknown {
       ${number("Roughness", "roughness", { min: 0, max: 1, step: 0.05 })} ${number("Opacity", "opacity", { min: 0, max: 1, step: 0.05 })}
       ${number("kt min", "kt-min", { min: 0, max: 1, step: 0.05 })} ${number("Index of refraction", "ior", { min: 0.1, step: 0.05 })}
     </div>
-    <div class="row-of-fields">
-      ${typeof mirror === "boolean" ? check(t("Mirror"), mirror, set("mirror")) : nothing}
+    <div class="column">
+      ${typeof mirror === "boolean" ? check(t("Mirror"), mirror, set("mirror"), { term: "Mirror" }) : nothing}
       ${typeof transmission === "string"
         ? combo(
             t("Transmission"),
@@ -75,6 +78,7 @@ function fields(app: App, material: JsonObject): unknown {
               { value: "translucent", text: t("translucent") },
             ],
             set("transmission"),
+            { term: "Transmission" },
           )
         : nothing}
     </div>`;

@@ -41,11 +41,13 @@ export function cameraDialog(app: App): TemplateResult {
     to[i] = v;
     app.set({ [`objects.${field}`]: to });
   };
-  const three = (legend: Key, prefix: string, values: readonly number[], set: (i: number) => (v: number) => void, step: number) =>
+  const three = (legend: Key, prefix: "eyeU" | "eyeT" | "allU" | "allT", values: readonly number[], set: (i: number) => (v: number) => void, step: number) =>
     group(
       t(legend),
       ["x", "y", "z"].map((axis, i) => spin(`${prefix}${axis}`, round(values[i] ?? 0), set(i), { step })),
       "in-row",
+      prefix,
+      prefix,
     );
   const angle = app.get("viewpoint.view-angle") ?? camera["view-angle"] ?? 30;
   const isParallel = app.get("viewpoint.orthographic") === true;
@@ -63,8 +65,9 @@ export function cameraDialog(app: App): TemplateResult {
         max: 179,
         step: 1,
         reason: isParallel ? t("A parallel projection has no angle") : null,
+        term: "View angle",
       })}
-      ${check(t("Parallel"), isParallel, (on) => app.set({ "viewpoint.orthographic": on }))}
+      ${check(t("Parallel"), isParallel, (on) => app.set({ "viewpoint.orthographic": on }), { term: "Parallel" })}
     </div>
     ${matrices(app)}`,
   );
@@ -98,7 +101,7 @@ const KEYS: [string[], Key][] = [
   [["Enter"], "in the picture: inspect the pixel"],
   [["Shift + ← ↑ → ↓"], "in the picture: turn the camera"],
   [["+", "-"], "in the picture: zoom"],
-  [["Escape"], "close a dialog or a menu"],
+  [["Escape"], "close a dialog or a menu, or leave the steps for the finished picture"],
 ];
 
 export function keyboardDialog(app: App): TemplateResult {

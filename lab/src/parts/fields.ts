@@ -3,6 +3,7 @@
 import { html, nothing, type TemplateResult } from "lit-html";
 import { live } from "lit-html/directives/live.js";
 import { ref } from "lit-html/directives/ref.js";
+import { what, type Term } from "./what.ts";
 
 export interface Option {
   value: string;
@@ -29,16 +30,20 @@ function reasonOf(key: string, reason: string | null | undefined) {
   return { id, template: html`<span class="hidden" id=${id}>${reason}</span>` } as const;
 }
 
+/** A field with the button that explains its label. */
+const explained = (field: TemplateResult, label: string, term: Term | undefined): TemplateResult =>
+  term ? html`<div class="explained">${field}${what(term, label)}</div>` : field;
+
 export function combo(
   label: string,
   value: string,
   options: Option[],
   change: (value: string) => void,
-  more: { reason?: string | null; key?: string } = {},
+  more: { reason?: string | null; key?: string; term?: Term } = {},
 ): TemplateResult {
   const reason = reasonOf(more.key ?? label, more.reason);
   const title = more.reason ?? options.find((o) => o.value === value)?.title ?? "";
-  return html`<label class="field" title=${title}>
+  const field = html`<label class="field" title=${title}>
     <span class="label">${label}</span>
     <select
       ?disabled=${Boolean(more.reason)}
@@ -53,6 +58,7 @@ export function combo(
       )}
     </select></label
     >${reason.template}`;
+  return explained(field, label, more.term);
 }
 
 /** A number as it is typed: short, with a decimal point. */
@@ -66,6 +72,7 @@ export interface NumberRange {
   name?: string;
   reason?: string | null;
   key?: string;
+  term?: Term;
 }
 
 export function spin(label: string, value: number | null, change: (value: number) => void, range: NumberRange = {}): TemplateResult {
@@ -85,7 +92,7 @@ export function spin(label: string, value: number | null, change: (value: number
     const input = e.target as HTMLInputElement;
     if (input.value === "" || !input.validity.valid) input.value = text;
   };
-  return html`<label class="field number">
+  const field = html`<label class="field number">
     <span class="label">${label}</span>
     <input
       type="number"
@@ -101,16 +108,17 @@ export function spin(label: string, value: number | null, change: (value: number
       ${ref(show)}
     /></label
     >${reason.template}`;
+  return explained(field, range.name ?? label, range.term);
 }
 
 export function check(
   label: string,
   isChecked: boolean,
   change: (value: boolean) => void,
-  more: { reason?: string | null; key?: string; title?: string } = {},
+  more: { reason?: string | null; key?: string; title?: string; term?: Term } = {},
 ): TemplateResult {
   const reason = reasonOf(more.key ?? label, more.reason);
-  return html`<label class="check" title=${more.reason ?? more.title ?? ""}>
+  const field = html`<label class="check" title=${more.reason ?? more.title ?? ""}>
     <input
       type="checkbox"
       .checked=${live(isChecked)}
@@ -120,18 +128,21 @@ export function check(
     />
     <span>${label}</span></label
     >${reason.template}`;
+  return explained(field, label, more.term);
 }
 
-export function radio(label: string, name: string, isChecked: boolean, choose: () => void): TemplateResult {
-  return html`<label class="check">
+export function radio(label: string, name: string, isChecked: boolean, choose: () => void, term?: Term): TemplateResult {
+  const field = html`<label class="check">
     <input type="radio" name=${name} .checked=${live(isChecked)} @change=${choose} />
     <span>${label}</span>
   </label>`;
+  return explained(field, label, term);
 }
 
-export function group(legend: string, content: unknown, style = ""): TemplateResult {
+export function group(legend: string, content: unknown, style = "", term?: Term, word = legend): TemplateResult {
   return html`<fieldset class=${style}>
     <legend>${legend}</legend>
+    ${term ? what(term, word) : nothing}
     <div class="inside">${content}</div>
   </fieldset>`;
 }

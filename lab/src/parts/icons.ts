@@ -15,6 +15,8 @@ const PATHS = {
   play: "M8 5l11 7-11 7z",
   pause: "M8 5v14M16 5v14",
   next: "M7 5l9 7-9 7z",
+  finished: "M3 5h18v14H3zM3 16l5-5 4 4 3-3 6 5",
+  aside: "M4 12h16M8 8l-4 4 4 4M16 8l4 4-4 4",
   last: "M18 5v14M5 5l9 7-9 7z",
 } as const;
 

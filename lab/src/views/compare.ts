@@ -3,12 +3,13 @@
 import { html, nothing, type TemplateResult } from "lit-html";
 import { ref } from "lit-html/directives/ref.js";
 import type { App } from "../app.ts";
-import { equal } from "../json.ts";
+import { equal, type Json } from "../json.ts";
 import { COMPARISONS, type Comparison } from "../link.ts";
 import { button, check, combo, group } from "../parts/fields.ts";
 import { table } from "../parts/table.ts";
 import { stepWords } from "../stepwords.ts";
-import { t } from "../words.ts";
+import { nameOf } from "../states.ts";
+import { t, translated } from "../words.ts";
 import { show, stage } from "./picture.ts";
 import { combos } from "./settings.ts";
 
@@ -55,6 +56,29 @@ function blink(app: App) {
   }
 }
 
+/** At most this many settings are named in a caption. */
+const MOST_NAMED = 3;
+
+/** A value of the state as a word of a caption. */
+function valueWord(path: string, value: Json | undefined): string {
+  const field = path.slice(path.lastIndexOf(".") + 1);
+  const name = translated(field);
+  if (Array.isArray(value) && field === "models") return value.map((m) => nameOf(String(m)).replace("builtin:", "")).join(" + ");
+  if (typeof value === "string" && path.startsWith("settings.")) return value;
+  if (typeof value === "number" || typeof value === "string") return `${name} ${value}`;
+  if (typeof value === "boolean") return `${name} ${value ? t("on") : t("off")}`;
+  return value === null || value === undefined ? `${name} ${t("usual")}` : name;
+}
+
+/** A picture's caption: its letter and the settings in which the pictures differ. */
+function captionOf(app: App, picture: "a" | "b"): string {
+  const paths = Object.keys(app.situation.b).filter((path) => !path.startsWith("viewpoint.") || path.endsWith("-angle"));
+  const words = paths.slice(0, MOST_NAMED).map((path) => valueWord(path, app.get(path, picture)));
+  const more = paths.length > MOST_NAMED ? ", …" : "";
+  const letter = picture.toUpperCase();
+  return words.length ? `${letter}: ${words.join(", ")}${more}` : letter;
+}
+
 export function comparison(app: App): TemplateResult {
   blink(app);
   const { compare } = app.lab;
@@ -71,8 +95,12 @@ export function comparison(app: App): TemplateResult {
   });
   const stepB = app.lab.step !== null && app.hasSteps && app.stepB ? ` · ${t("{0} of {1}: {2}", app.stepB.value.number, app.stepB.value.total, stepWords(app.stepB.value))}` : "";
   const caption = (name: string, content: unknown) => html`<div class="captioned"><p class="caption">${name}</p>${content}</div>`;
+  const [captionA, captionB] = [captionOf(app, "a"), `${captionOf(app, "b")}${stepB}`];
+  const shows = (isB: boolean) => (compare === "blink" && isB === showsB ? "caption shown" : "caption");
+  const stacked = html`<div class="captions"><p class=${shows(false)}>${captionA}</p><p class=${shows(true)}>${captionB}</p></div>
+    <div class="stack">${a}${b}</div>`;
   return html`<div class=${`pair ${compare}`}>
-    ${isStacked ? html`<div class="stack">${a}${b}</div>` : html`${caption("A", a)}${caption(`B${stepB}`, b)}`}
+    ${isStacked ? stacked : html`${caption(captionA, a)}${caption(captionB, b)}`}
     ${compare === "difference"
       ? caption(
           t("Difference"),
@@ -95,7 +123,7 @@ export function comparisonControls(app: App): unknown {
       /></label>`
     : nothing}
   ${compare === "blink"
-    ? html`<p class="caption">${showsB ? "B" : "A"} ${button(t("Show the other picture"), () => {
+    ? html`<p class="caption">${captionOf(app, showsB ? "b" : "a")} ${button(t("Show the other picture"), () => {
         showsB = !showsB;
         app.changed();
       })}</p>`

@@ -36,6 +36,20 @@ export function start(app: App, exercise: Exercise) {
   app.openState(exercise.start, { exercise: exercise.id, page, compare: "none" });
   app.exerciseResult = null;
   app.hasHint = false;
+  bringIntoView();
+}
+
+/** Scrolls so that picture and text are seen, and puts the focus to the text where it was lost. */
+function bringIntoView() {
+  setTimeout(() => {
+    const region = document.querySelector<HTMLElement>(".region.exercise");
+    const stage = document.querySelector<HTMLElement>(".pictures .stage");
+    if (!region || !stage) return;
+    const page = (e: Element, side: "top" | "bottom") => e.getBoundingClientRect()[side] + scrollY;
+    const isAllInView = page(region, "bottom") < innerHeight;
+    scrollTo({ top: isAllInView ? 0 : page(stage, "top") - 8, behavior: "instant" });
+    if (document.activeElement === document.body) region.querySelector("h3")?.focus({ preventScroll: true });
+  }, 80);
 }
 
 async function checkIt(app: App, exercise: Exercise) {
@@ -58,7 +72,7 @@ export function exerciseRegion(app: App): unknown {
   const result = app.exerciseResult?.id === exercise.id ? app.exerciseResult : null;
   return html`<section class="region exercise" aria-labelledby="exercise-region-title">
     <h2 id="exercise-region-title" class="hidden">${t("Exercise")}</h2>
-    <h3>${translated(exercise.title)}</h3>
+    <h3 tabindex="-1">${translated(exercise.title)}</h3>
     <p>${translated(exercise.text)}</p>
     ${app.hasHint ? html`<p class="hint">${translated(exercise.hint)}</p>` : nothing}
     <p class=${`result ${result ? (result.passed ? "right" : "wrong") : ""}`}>${result?.text ?? ""}</p>
@@ -71,6 +85,7 @@ export function exerciseRegion(app: App): unknown {
       ${button(t("Start again"), () => {
         app.openState(overlay(app.catalog!.defaults, exercise.start), { exercise: exercise.id });
         app.exerciseResult = null;
+        bringIntoView();
       })}
       ${button(t("Leave"), () => app.setLab({ exercise: null }, "push"))}
     </div>

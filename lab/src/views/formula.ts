@@ -7,32 +7,79 @@ import { spin } from "../parts/fields.ts";
 import { formula } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
+import { words } from "../parts/what.ts";
 import { t, translated } from "../words.ts";
-import { setMaterial } from "../materials.ts";
+import { attenuationOf, lightNow, setAttenuation, setField } from "../lights.ts";
+import { propertyOf, setMaterial } from "../materials.ts";
+import { CHANNELS } from "../dialogs/lights.ts";
 import { explanationOf, objects } from "./pixel.ts";
+
+/** The three channels of a colour as numbers that can be set. */
+function colorSpins(symbol: string, values: readonly number[], set: (values: number[]) => void): TemplateResult {
+  return html`<div class="in-row">
+    ${CHANNELS.map(([, label], i) =>
+      spin(
+        t(label),
+        values[i] ?? 0,
+        (v) => {
+          const to = [...values];
+          to[i] = v;
+          set(to);
+        },
+        { name: t("Value of {0}", `${symbol} ${t(label).toLowerCase()}`), min: 0, step: 0.05 },
+      ),
+    )}
+  </div>`;
+}
+
+/** Colours of a light by their symbols in the formula. */
+const LIGHT_COLORS = { Ia: "ambient", Id: "diffuse", Is: "specular" } as const;
+
+/** Numbers of a light that can be set: a colour, or the coefficients of its attenuation. */
+function lightValue(app: App, symbol: string, number: number): Cell {
+  const light = lightNow(app, number);
+  const [letter = "", name = ""] = symbol.split(" ");
+  const field = Object.hasOwn(LIGHT_COLORS, letter) ? LIGHT_COLORS[letter as keyof typeof LIGHT_COLORS] : null;
+  if (light && field) {
+    const values = (light[field] as number[] | undefined) ?? [0, 0, 0];
+    return colorSpins(`${letter} ${name}`, values, (to) => setField(app, number, field, to, to.join(",")));
+  }
+  if (light && letter === "f_att") {
+    return html`<div class="in-row">
+      ${attenuationOf(light).map((c, i) =>
+        spin(`c${i + 1}`, c, (v) => setAttenuation(app, number, i, v), { name: t("Value of {0}", `c${i + 1} ${name}`), min: 0, step: 0.05 }),
+      )}
+    </div>`;
+  }
+  const open = () => {
+    app.lightNumber = number;
+    app.dialogs.open("lights");
+  };
+  return letter === "L" || letter === "ambient" ? html`<button type="button" class="link" @click=${open}>${t("Lights…")}</button>` : "";
+}
 
 /** Where a value can be changed: a field of the state, a light, the material. */
 function place(app: App, row: JsonObject): Cell {
   const setting = row["setting"];
   if (typeof setting !== "string") return "";
-  if (setting.startsWith("lights.")) {
-    const number = Number(setting.slice(7));
-    const open = () => {
-      app.lightNumber = number;
-      app.dialogs.open("lights");
-    };
-    return html`<button type="button" class="link" @click=${open}>${t("Lights…")}</button>`;
-  }
-  if (setting === "materials.shininess") {
-    const value = Number(row["value"]);
-    const material = materialOfPixel(app);
-    if (material) return spin("n", value, (v) => setMaterial(app, material, "shininess", String(v)), { name: t("Shininess"), min: 0, max: 1000 });
-  }
+  const symbol = String(row["symbol"]);
+  if (setting.startsWith("lights.")) return lightValue(app, symbol, Number(setting.slice(7)));
   if (setting.startsWith("materials.")) {
+    const property = setting.slice(10);
+    const name = materialOfPixel(app);
+    const material = app.complete?.value.materials.find((m) => String(m["name"] ?? "") === name);
+    const value = material && propertyOf(material, property);
+    if (name !== null && Array.isArray(value)) {
+      return colorSpins(symbol, value.map(Number), (to) => setMaterial(app, name, property, to.join(",")));
+    }
+    if (name !== null && typeof value === "number") {
+      return spin(symbol, value, (v) => setMaterial(app, name, property, String(v)), { name: t("Value of {0}", symbol), min: 0, max: 1000 });
+    }
     return html`<button type="button" class="link" @click=${() => app.dialogs.open("materials")}>${t("Materials…")}</button>`;
   }
   const value = at(app.state, setting);
-  if (typeof value === "number") return spin(setting, value, (v) => app.set({ [setting]: v }));
+  if (typeof value === "number") return spin(symbol, value, (v) => app.set({ [setting]: v }), { name: t("Value of {0}", symbol) });
+  if (Array.isArray(value) && value.length === 3) return colorSpins(symbol, value.map(Number), (to) => app.set({ [setting]: to }));
   return "";
 }
 
@@ -40,6 +87,9 @@ function materialOfPixel(app: App): string | null {
   const seen = objects(explanationOf(app)?.["candidates"]).find((c) => c["stage"] === "visible");
   return seen && typeof seen["material"] === "string" ? seen["material"] : null;
 }
+
+/** Symbols of a light that are explained below the table. */
+const FORMULA_TERMS = ["N·L", "R·V", "N·H", "f_att", "S"] as const;
 
 export function formulaRegion(app: App): TemplateResult {
   const found = explanationOf(app) ? app.answerTo("explain")?.ok["formula"] : null;
@@ -57,7 +107,8 @@ export function formulaRegion(app: App): TemplateResult {
       ? html`<div class="math scroll" tabindex="0" role="group" aria-label=${t("Formula")}>
             ${typeof mathml === "string" ? formula(mathml, "letters") : nothing} ${typeof numbers === "string" ? formula(numbers, "numbers") : nothing}
           </div>
-          ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}`
+          ${table({ name: t("Values"), columns: [t("symbol"), t("value"), t("meaning"), t("set in")], rows, caption: true })}
+          ${words(FORMULA_TERMS.filter((term) => rows.some(([symbol]) => String(symbol).startsWith(`${term} (`))).map((term) => [term, term]))}`
       : html`<p class="note">${t("Inspect a pixel to see its formula with numbers.")}</p>`}
     ${f ? printed(app) : nothing}
   </section>`;

@@ -12,7 +12,10 @@ import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { stagePart, t, translated } from "../words.ts";
 import { choiceOf } from "./chosen.ts";
+import { depthCue } from "./depth-cue.ts";
+import { facing } from "./facing.ts";
 import { show } from "./picture.ts";
+import { profile } from "./profile.ts";
 import { explanationOf, increments, objects } from "./pixel.ts";
 
 // ---- Scene ----
@@ -35,7 +38,7 @@ export function pipeline(app: App): TemplateResult {
   const rows = objects(answer?.["stages"]).map((s): Cell[] => [translated(String(s["stage"])), stagePart(String(s["in"])), stagePart(String(s["out"]))]);
   return html`<section class="region" aria-labelledby="stages-title">
     <h2 id="stages-title">${t("Stages")}</h2>
-    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${projector(answer)}
+    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${facing(app, answer)} ${projector(answer)}
   </section>`;
 }
 
@@ -79,7 +82,9 @@ function projector(answer: JsonObject | undefined): unknown {
 export function compareAll(app: App): TemplateResult {
   const key = JSON.stringify({ want: "compare-all", state: app.state });
   const answer = app.answers.get("compare-all");
-  const rows = answer?.key === key ? objects(answer.value.ok["rows"]) : [];
+  const order = (app.catalog?.algorithms["visibility"] ?? []).map((a) => a.name);
+  const place = (r: JsonObject) => order.indexOf(String(r["algorithm"]).split(" ")[0]!);
+  const rows = answer?.key === key ? objects(answer.value.ok["rows"]).sort((a, b) => place(a) - place(b)) : [];
   const ask = () => {
     app.answer("compare-all", { want: "compare-all", state: app.state }, true);
     app.say(t("Comparing all algorithms…"), "compare-all");
@@ -94,17 +99,23 @@ export function compareAll(app: App): TemplateResult {
   return html`<section class="region" aria-labelledby="all-title">
     <h2 id="all-title">${t("All algorithms")}</h2>
     ${rows.length
-      ? table({
+      ? html`${table({
           name: t("All algorithms"),
           columns: [t("algorithm"), t("milliseconds"), t("memory, kB"), t("pixels that differ"), t("counters")],
           rows: rows.map((r): Cell[] => [
             String(r["algorithm"]),
             typeof r["seconds"] === "number" ? Math.round(r["seconds"] * 10000) / 10 : null,
-            typeof r["memory"] === "number" ? Math.round(r["memory"] / 1024) : null,
+            typeof r["memory"] === "number" && r["memory"] > 0 ? Math.max(1, Math.round(r["memory"] / 1024)) : null,
             (r["differ"] as number | undefined) ?? null,
-            r["limit"] ? String(r["limit"]) : counters(r["counters"]),
+            html`<span class="counted">${r["limit"] ? String(r["limit"]) : counters(r["counters"])}</span>`,
           ]),
-        })
+        })}
+        <ul class="notes">
+          <li><strong>${t("milliseconds")}</strong>: ${t("of one picture; the first picture of an algorithm also builds what it keeps, such as trees")}</li>
+          <li><strong>${t("memory, kB")}</strong>: ${t("what it keeps besides the picture; –: nothing")}</li>
+          <li><strong>${t("pixels that differ")}</strong>: ${t("from the first algorithm's picture; 0: all agree")}</li>
+          <li><strong>${t("counters")}</strong>: ${t("what the algorithm counted; those that are 0 are left out")}</li>
+        </ul>`
       : html`<p class="note">${t("Draws this scene with every algorithm and compares time, memory and pictures.")}</p>`}
     ${button(t("Compare all"), ask)}
   </section>`;
@@ -115,21 +126,57 @@ export function compareAll(app: App): TemplateResult {
 /** The exponent whose curve is shown, and the light whose attenuation. */
 let ns = 20;
 
+/** Lines of a curve's drawing: points and a class of the style sheet. */
+interface Graph {
+  points: number[][];
+  style: string;
+}
+
+/** The plane of a curve: the range of x, and the largest y that is shown. */
+interface Frame {
+  first: number;
+  last: number;
+  most: number;
+}
+
+const plotX = (f: Frame, x: number) => 24 + ((x - f.first) / (f.last - f.first)) * 250;
+const plotY = (f: Frame, y: number) => 130 - (y / f.most) * 115;
+
 /** A curve with its axes and a mark. */
-function curve(name: string, points: number[][], mark: [number, number] | null, labels: [string, string]): TemplateResult {
-  if (!points.length) return html`<div class="curve"></div>`;
-  const [first, last] = [points[0]![0]!, points[points.length - 1]![0]!];
-  const X = (x: number) => 24 + ((x - first) / (last - first)) * 250;
-  const Y = (y: number) => 130 - y * 115;
-  const path = points.map(([x = 0, y = 0], i) => `${i ? "L" : "M"}${X(x).toFixed(1)} ${Y(y).toFixed(1)}`).join("");
+function curve(name: string, frame: Frame, graphs: Graph[], mark: [number, number] | null, labels: [string, string], more = ""): TemplateResult {
+  const [X, Y] = [(x: number) => plotX(frame, x).toFixed(1), (y: number) => plotY(frame, y).toFixed(1)];
+  const path = ({ points, style }: Graph) =>
+    points.length ? `<path class="${style}" d="${points.map(([x = 0, y = 0], i) => `${i ? "L" : "M"}${X(x)} ${Y(y)}`).join("")}"/>` : "";
   const marked = mark
-    ? `<circle class="mark" cx="${X(mark[0]).toFixed(1)}" cy="${Y(mark[1]).toFixed(1)}" r="4"/><path class="guide" d="M${X(mark[0]).toFixed(1)} 130V${Y(mark[1]).toFixed(1)}H24"/>`
+    ? `<circle class="mark" cx="${X(mark[0])}" cy="${Y(mark[1])}" r="4"/><path class="guide" d="M${X(mark[0])} 130V${Y(mark[1])}H24"/>`
     : "";
   const text =
-    `<svg viewBox="0 0 290 152"><path class="axes" d="M24 10V130H280"/><text x="2" y="19">1</text><text x="2" y="134">0</text>` +
+    `<svg viewBox="0 0 290 152"><path class="axes" d="M24 10V130H280"/><text x="4" y="${Number(Y(1)) + 4}">1</text><text x="4" y="134">0</text>` +
     `<text x="24" y="147">${labels[0]}</text><text x="274" y="147" text-anchor="end">${labels[1]}</text>` +
-    `<path class="graph" d="${path}"/>${marked}</svg>`;
+    `${graphs.map(path).join("")}${more}${marked}</svg>`;
   return html`<div class="curve" role="img" aria-label=${name}>${drawing(text, name)}</div>`;
+}
+
+/** Half of 1 on the curve of cosⁿ: as wide as the highlight is where it is half as bright. */
+function halfWidth(frame: Frame, half: number): string {
+  const [left, right] = [plotX(frame, -half), plotX(frame, half)].map((x) => x.toFixed(1));
+  const y = plotY(frame, 0.5).toFixed(1);
+  const mark = (x: string) => `<circle class="half" cx="${x}" cy="${y}" r="3"/>`;
+  return `<path class="half" d="M${left} ${y}H${right}"/>${mark(left!)}${mark(right!)}<text class="words" x="${Math.min(Number(right) + 6, 210)}" y="${Number(y) + 4}">±${half.toFixed(1)}°</text>`;
+}
+
+/** Largest distance of the attenuation curve, and the largest factor that is shown. */
+const FARTHEST = 10;
+const ATTENUATION: Frame = { first: 0, last: FARTHEST, most: 1.6 };
+
+/** A law of attenuation: what is above 1 is clamped, and shown dotted. */
+function attenuationGraphs(law: (d: number) => number, style: string): Graph[] {
+  const all = Array.from({ length: 401 }, (_, i) => (i / 400) * FARTHEST).map((d) => [d, law(d)]);
+  const beyond = all.filter(([, y = 0]) => y > 1 && y <= ATTENUATION.most);
+  return [
+    { points: beyond, style: `${style} beyond` },
+    { points: all.map(([d = 0, y = 0]) => [d, Math.min(1, y)]), style },
+  ];
 }
 
 const pointsOf = (app: App, name: string) => ((app.answerTo(name)?.ok["points"] as number[][] | undefined) ?? []).map((p) => [...p]);
@@ -147,9 +194,11 @@ export function illumination(app: App): TemplateResult {
 
   const light = app.complete?.value.lights[app.lightNumber];
   const c = light ? attenuationOf(light) : [1, 0, 0];
-  app.answer("attenuation", { want: "curve", what: "attenuation", c });
   const distance = Number(lit.find((l) => l["light"] === app.lightNumber)?.["distance"] ?? NaN);
-  const attenuated = Number.isFinite(distance) && distance <= 10 ? Math.min(1, 1 / (c[0]! + c[1]! * distance + c[2]! * distance ** 2)) : null;
+  const attenuated = Number.isFinite(distance) && distance <= FARTHEST ? Math.min(1, 1 / (c[0]! + c[1]! * distance + c[2]! * distance ** 2)) : null;
+  const law = (d: number) => 1 / Math.max(1e-9, c[0]! + c[1]! * d + c[2]! * d * d);
+  const square = (d: number) => 1 / Math.max(1e-9, d * d);
+  const cosine: Frame = { first: -90, last: 90, most: 1 };
   const set = (value: number) => {
     ns = value;
     app.changed();
@@ -159,17 +208,35 @@ export function illumination(app: App): TemplateResult {
       <h2 id="curves-title">${t("Curves")}</h2>
       <div class="curves">
         <div>
-          ${curve(t("cos^n curve"), pointsOf(app, "cos-n"), angle !== null ? [angle, Math.max(0, Math.cos((angle * Math.PI) / 180)) ** ns] : null, ["−90°", "90°"])}
-          <p class="caption">cosⁿ Ω, ${t("half width {0} degrees", half.toFixed(2))}</p>
+          ${curve(
+            t("cos^n curve"),
+            cosine,
+            [{ points: pointsOf(app, "cos-n"), style: "graph" }],
+            angle !== null ? [angle, Math.max(0, Math.cos((angle * Math.PI) / 180)) ** ns] : null,
+            ["−90°", "90°"],
+            halfWidth(cosine, half),
+          )}
+          <p class="caption">cosⁿ Ω, ${t("half width {0} degrees", half.toFixed(2))} = acos 2<sup>−1/n</sup></p>
           ${spin("n", ns, set, { name: t("Exponent n"), min: 1, max: 200, step: 1 })}
         </div>
         <div>
-          ${curve(t("Attenuation curve"), pointsOf(app, "attenuation"), attenuated !== null ? [distance, attenuated] : null, ["d = 0", "10"])}
-          <p class="caption">f_att = min(1, 1 / (${c[0]} + ${c[1]} d + ${c[2]} d²))</p>
+          ${curve(
+            t("Attenuation curve"),
+            ATTENUATION,
+            [...attenuationGraphs(square, "square"), ...attenuationGraphs(law, "graph")],
+            attenuated !== null ? [distance, attenuated] : null,
+            ["d = 0", String(FARTHEST)],
+          )}
+          <p class="legend">
+            <span><i class="swatch graph" aria-hidden="true"></i>${t("solid")}: min(1, 1 / (${c[0]} + ${c[1]} d + ${c[2]} d²))</span>
+            <span><i class="swatch square" aria-hidden="true"></i>${t("dashed")}: min(1, 1 / d²)</span>
+            <span>${t("dotted: above 1, where it is clamped")}</span>
+          </p>
           <button type="button" @click=${() => app.dialogs.open("lights")}>${t("Lights…")}</button>
         </div>
       </div>
-    </section>`;
+    </section>
+    ${depthCue(app)}`;
 }
 
 /** The terms of the formula, apart and together. */
@@ -291,9 +358,9 @@ export function shading(app: App): TemplateResult {
   };
   return html`<section class="region" aria-labelledby="shading-title">
       <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
-      <div class="thumbnails">${["flat", "gouraud", "phong"].map(one)}</div>
+      <div class="thumbnails three">${["flat", "gouraud", "phong"].map(one)}</div>
     </section>
-    ${normals(app)}
+    ${profile(app)} ${normals(app)}
     <section class="region" aria-labelledby="defects-title">
       <h2 id="defects-title">${t("Defects of interpolated shading")}</h2>
       <div class="list">${DEFECTS.map((d) => radio(t(d.name), "defect", d === shown, () => open(d)))}</div>

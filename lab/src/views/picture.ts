@@ -12,6 +12,7 @@ import { combo } from "../parts/fields.ts";
 import { drawing } from "../parts/markup.ts";
 import { t } from "../words.ts";
 import { turn, zoom } from "./camera.ts";
+import { asked, channelLegend, highlightLegend, highlightMarks } from "./marks.ts";
 import { chooseShapeAt, chosenOutline, markShapes } from "./chosen.ts";
 
 /** The result that each canvas shows. */
@@ -300,7 +301,7 @@ export function stage(app: App, s: Stage): TemplateResult {
     @keydown=${(e: KeyboardEvent) => keyDown(app, e, picture)}
   >
     <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane))}></canvas>
-    ${picture === "a" ? html`${overlay(app)} ${chosenOutline(app)}` : nothing} ${cross(app)} ${picture === "a" ? handles(app) : nothing}
+    ${picture === "a" ? html`${overlay(app)} ${chosenOutline(app)}` : nothing} ${cross(app)} ${picture === "a" ? html`${asked(app)} ${highlightMarks(app)} ${handles(app)}` : nothing}
   </div>`;
 }
 
@@ -316,10 +317,17 @@ export function dragChoice(app: App): TemplateResult {
   });
 }
 
-/** The colours in the drawing over the picture, each with a word. */
+/** What the line below the picture says: the colours of its channel, of the step, of marks. */
 export function legend(app: App): unknown {
+  return html`${channelLegend(app)} ${stepLegend(app)} ${highlightLegend(app)}`;
+}
+
+/** The colours in the drawing over the picture, each with a word. */
+function stepLegend(app: App): unknown {
   const step = app.step?.value;
   if (app.lab.step === null || !app.hasSteps || !step) return nothing;
+  // Algorithms that overwrite show what will not last in pale colours; the others begin with paper.
+  const undecided: [string, string] = ["drawn", "piece"].includes(step.group) ? ["pale", t("pale: will be drawn over")] : ["paper", t("not decided yet")];
   const windows: [string, string][] = [
     ["empty", t("empty window")],
     ["one", t("one polygon")],
@@ -328,8 +336,8 @@ export function legend(app: App): unknown {
     ["cut", t("cut in four")],
   ];
   const others: [string, string][] = [
-    ["stays", t("stays")],
-    ["hidden", t("hidden")],
+    ["stays", t("nearer, is kept")],
+    ["hidden", t("farther, is hidden")],
     ["line", t("scan line")],
     ["span", t("span")],
     ["rays", t("rays")],
@@ -349,6 +357,8 @@ export function legend(app: App): unknown {
   // Windows have all words, other steps those of what is drawn.
   const drawn = new Set([...(step.drawing ?? "").matchAll(/class="([^"]*)"/g)].flatMap((m) => m[1]!.split(" ")));
   const list = step.group === "window" ? windows : others.filter(([key]) => drawn.has(key));
+  const isDrawing = ["window", "drawn", "line", "rays", "piece", "clip", "visible"].includes(step.group);
   if (!list.length) return nothing;
-  return html`<p class="legend">${list.map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>`;
+  return html`<p class="legend">${[...list, ...(isDrawing ? [undecided] : [])].map(([key, text]) => html`<span><i class=${`swatch ${key}`} aria-hidden="true"></i>${text}</span>`)}</p>
+    ${step.group === "window" ? html`<p class="note">${t("Windows are cut between tiles of 64 pixels, then at powers of two, never through a pixel.")}</p>` : nothing}`;
 }

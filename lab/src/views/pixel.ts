@@ -7,6 +7,7 @@ import { button, spin } from "../parts/fields.ts";
 import { number } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
+import { depthNote } from "../parts/what.ts";
 import { isEnglish, t, translated } from "../words.ts";
 import { whyWords } from "../why.ts";
 import { choiceOf, chosenFinder, chosenWords } from "./chosen.ts";
@@ -233,7 +234,7 @@ export function pixelRegion(app: App): TemplateResult {
     ${explanation
       ? html`${app.hasSteps ? nothing : chosenWords(app)}
           <p class="why">${why.map((s) => whyWords(s)).join(" ")}</p>
-          ${surfaces(app, explanation)} ${decisions(app, explanation)} ${light(app, explanation)} ${hasOwnRays(app) ? nothing : rayTree(app)}
+          ${surfaces(app, explanation)} ${depthNote()} ${decisions(app, explanation)} ${light(app, explanation)} ${hasOwnRays(app) ? nothing : rayTree(app)}
           ${app.lab.page === "shading" ? nothing : increments(app, explanation)}`
       : nothing}
   </section>`;

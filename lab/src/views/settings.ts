@@ -6,7 +6,8 @@ import { nameOf } from "../states.ts";
 import { pickFiles } from "../files.ts";
 import type { Json } from "../json.ts";
 import { button, check, combo, group, radio, spin, type Option } from "../parts/fields.ts";
-import { t, tooltip } from "../words.ts";
+import type { Term } from "../parts/what.ts";
+import { t, tooltip, type Key } from "../words.ts";
 
 type Picture = "a" | "b";
 
@@ -75,19 +76,24 @@ export function choose(app: App, setting: string, value: string, picture: Pictur
   app.set(fields, picture);
 }
 
-function registryCombo(app: App, label: string, setting: string, registry: string, picture: Picture, usual = "") {
+/** A label that is explained. */
+type Explained = Key & Term;
+
+function registryCombo(app: App, label: Explained, setting: string, registry: string, picture: Picture, usual = "") {
   const value = text(app, `settings.${setting}`, picture) || usual;
-  return combo(label, value, including(options(app, registry), value), (v) => choose(app, setting, v, picture), {
+  return combo(t(label), value, including(options(app, registry), value), (v) => choose(app, setting, v, picture), {
     reason: reasonAgainst(app, setting, picture),
     key: `${picture} ${setting}`,
+    term: label,
   });
 }
 
-function fixedCombo(app: App, label: string, setting: string, values: string[], picture: Picture) {
+function fixedCombo(app: App, label: Explained, setting: string, values: string[], picture: Picture) {
   const value = text(app, `settings.${setting}`, picture) || values[0]!;
-  return combo(label, value, including(named(values), value), (v) => choose(app, setting, v, picture), {
+  return combo(t(label), value, including(named(values), value), (v) => choose(app, setting, v, picture), {
     reason: reasonAgainst(app, setting, picture),
     key: `${picture} ${setting}`,
+    term: label,
   });
 }
 
@@ -103,10 +109,11 @@ function model(app: App, picture: Picture): TemplateResult {
   const all = [...builtin, ...own.filter((o) => app.own.models.has(o.text))];
   const joined = models.map((m) => nameOf(String(m)).replace("builtin:", "")).join(" + ");
   const list = all.some((o) => o.value === value) ? all : [...all, { value, text: joined }];
-  return combo(t("Model"), value, list, (v) => {
+  const change = (v: string) => {
     if (picture === "b") app.set({ models: JSON.parse(v) as Json }, "b");
     else app.openModels(JSON.parse(v) as string[]);
-  });
+  };
+  return html`<div class="model">${combo(t("Model"), value, list, change, { term: "Model" })}</div>`;
 }
 
 const SIZES = ["320 x 240", "640 x 480", "800 x 600", "1024 x 768", "1280 x 960", "1920 x 1080"];
@@ -122,21 +129,25 @@ export function combos(app: App, picture: Picture): TemplateResult[] {
   };
   return [
     model(app, picture),
-    registryCombo(app, t("Visibility"), "visibility", "visibility", picture),
-    registryCombo(app, t("Acceleration"), "acceleration", "acceleration", picture, "bvh"),
-    registryCombo(app, t("Illumination"), "illumination", "illumination", picture),
-    registryCombo(app, t("Shading"), "shading", "shading", picture),
-    fixedCombo(app, t("Interpolation"), "interpolation", ["perspective", "linear"], picture),
-    registryCombo(app, t("Shadows"), "shadows", "shadows", picture),
-    fixedCombo(app, t("Volume counting"), "volume-counting", ["z-fail", "z-pass"], picture),
-    registryCombo(app, t("Transparency"), "transparency", "transparency", picture),
-    registryCombo(app, t("Transparency order"), "transparency-order", "transparency-order", picture),
-    registryCombo(app, t("Global illumination"), "global", "global", picture),
-    fixedCombo(app, t("Colour space"), "color-space", ["srgb", "raw"], picture),
-    combo(t("Samples"), samples, including(named([1, 2, 4, 8, 16, 32]), samples), (v) =>
-      app.set({ "settings.samples": Number(v) }, picture),
+    registryCombo(app, "Visibility", "visibility", "visibility", picture),
+    registryCombo(app, "Acceleration", "acceleration", "acceleration", picture, "bvh"),
+    registryCombo(app, "Illumination", "illumination", "illumination", picture),
+    registryCombo(app, "Shading", "shading", "shading", picture),
+    fixedCombo(app, "Interpolation", "interpolation", ["perspective", "linear"], picture),
+    registryCombo(app, "Shadows", "shadows", "shadows", picture),
+    fixedCombo(app, "Volume counting", "volume-counting", ["z-fail", "z-pass"], picture),
+    registryCombo(app, "Transparency", "transparency", "transparency", picture),
+    registryCombo(app, "Transparency order", "transparency-order", "transparency-order", picture),
+    registryCombo(app, "Global illumination", "global", "global", picture),
+    fixedCombo(app, "Colour space", "color-space", ["srgb", "raw"], picture),
+    combo(
+      t("Samples"),
+      samples,
+      including(named([1, 2, 4, 8, 16, 32]), samples),
+      (v) => app.set({ "settings.samples": Number(v) }, picture),
+      { term: "Samples" },
     ),
-    combo(t("Size"), size, including(named(SIZES), size), setSize),
+    combo(t("Size"), size, including(named(SIZES), size), setSize, { term: "Size" }),
   ];
 }
 
@@ -157,20 +168,22 @@ function coherence(app: App): TemplateResult {
         reason: usable.includes(name) ? null : t("{0} does not use it", String(found?.name ?? "")),
         key: `coherence ${name}`,
         title: tooltip(description),
+        term: { text: description },
       }),
     ),
     "two",
+    "Coherence",
   );
 }
 
 function culling(app: App): TemplateResult {
-  const one = (label: string, field: string) =>
-    check(label, app.get(`settings.cull.${field}`) === true, (on) => app.set({ [`settings.cull.${field}`]: on }));
-  return group(t("Culling"), [one(t("View volume"), "frustum"), one(t("Back faces"), "back-face")], "two");
+  const one = (label: Explained, field: string) =>
+    check(t(label), app.get(`settings.cull.${field}`) === true, (on) => app.set({ [`settings.cull.${field}`]: on }), { term: label });
+  return group(t("Culling"), [one("View volume", "frustum"), one("Back faces", "back-face")], "two", "Culling");
 }
 
 /** Names of channels as labels, where the state file has a switch for them. */
-const CHANNELS = [
+export const CHANNELS = [
   ["color", "Colour"],
   ["depth", "Depth"],
   ["surface", "Id"],
@@ -181,7 +194,7 @@ const CHANNELS = [
 ] as const;
 
 /** Terms of the lights, shown like channels. */
-const TERMS = [
+export const TERMS = [
   ["ambient", "Ambient term"],
   ["diffuse", "Diffuse term"],
   ["specular", "Specular term"],
@@ -201,10 +214,11 @@ function channels(app: App): TemplateResult {
   return group(
     t("Channels shown"),
     [
-      ...there.map(([field, label]) => radio(t(label), "channel", field === shown, () => set(field, null))),
-      ...TERMS.map(([field, label]) => radio(t(label), "channel", field === shown, () => set("color", field))),
+      ...there.map(([field, label]) => radio(t(label), "channel", field === shown, () => set(field, null), label)),
+      ...TERMS.map(([field, label]) => radio(t(label), "channel", field === shown, () => set("color", field), label)),
     ],
     "two",
+    "Channels shown",
   );
 }
 
@@ -223,12 +237,14 @@ export function settings(app: App): TemplateResult {
         max: 32,
         step: 1,
         reason: reasonAgainst(app, "depth-bits", "a"),
+        term: "Depth bits",
       })}
       ${app.get("settings.shadows") === "map"
         ? spin(t("Shadow map size"), typeof mapSize === "number" ? mapSize : null, (v) => app.set({ "settings.shadow-map-size": v }), {
             min: 16,
             max: 8192,
             step: 1,
+            term: "Shadow map size",
           })
         : nothing}
     </div>

@@ -59,7 +59,8 @@ export function stepsToolbar(app: App): TemplateResult {
           },
           { icon: icon("next"), disabled: !isReady },
         )}
-        ${button(t("Last step"), go(count), { icon: icon("last"), disabled: !isReady })}
+        ${button(t("Last step"), () => (app.lab.step === count ? app.showFinished() : go(count)()), { icon: icon("last"), disabled: !isReady })}
+        ${button(t("Finished picture"), () => app.showFinished(), { icon: icon("finished"), disabled: app.lab.step === null })}
       </div>
       <input
         class="slider"

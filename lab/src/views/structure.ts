@@ -13,6 +13,7 @@ import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { rowButton, table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
+import { depthNote } from "../parts/what.ts";
 import { stepWords } from "../stepwords.ts";
 import { t, translated } from "../words.ts";
 import { choiceOf, chosenFinder, chosenWords, followsChoice, followStep, goTo } from "./chosen.ts";
@@ -299,7 +300,7 @@ function zBuffer(app: App, step: Step): unknown {
   const choice = choiceOf(app, f["facet"]);
   return html`${depthsDrawing(app, step)}
   ${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing}
-  ${depths ? depthTable(depths) : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+  ${depths ? html`${depthTable(depths)}${depthNote()}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
 }
 
 /** Brute force: what the pixel's sample is compared with. */
@@ -310,7 +311,7 @@ function bruteForce(app: App, step: Step): unknown {
   const rows = facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]);
   const columns = [t("facet"), t("Depth"), t("verdict")];
   return html`${bruteForceDrawing(app, step)}
-  ${table({ name: t("Depths"), columns, rows, ...rowsOf(app, facets.map((f) => f["facet"])), caption: true }, () => app.changed())}`;
+  ${table({ name: t("Depths"), columns, rows, ...rowsOf(app, facets.map((f) => f["facet"])), caption: true }, () => app.changed())}${depthNote()}`;
 }
 
 /** Ray casting: what the ray of the pixel opened in the structure, and the facets that were tested there. */
@@ -366,7 +367,7 @@ function runsOf(f: JsonObject): unknown {
       const [row = 0, first = 0, end = 0] = numbers(r);
       return [row, `${first}–${end - 1}`, end - first, word];
     });
-  const rows = [...runs("stays", t("stays")), ...runs("hidden", t("hidden"))].sort((a, b) => Number(a[0]) - Number(b[0]));
+  const rows = [...runs("stays", t("nearer, is kept")), ...runs("hidden", t("farther, is hidden"))].sort((a, b) => Number(a[0]) - Number(b[0]));
   return table({ name: t("Runs of pixels"), columns: [t("row"), t("pixels"), t("count"), t("verdict")], rows, caption: true });
 }
 

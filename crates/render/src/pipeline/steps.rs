@@ -10,6 +10,7 @@ use crate::trace::{Observer, Step, picture::Recorder};
 use crate::visible::{NullSink, TileSink};
 use crate::{Channels, ColorSpace, Error, Execution, Session, Settings};
 use std::sync::{Arc, Mutex};
+use vitral_exec::Budget;
 use vitral_frame::{Frame, Plane};
 use vitral_raster::{LayerList, NO_FACET, SamplePattern, TILE, Tile, TileGrid, Viewport};
 
@@ -53,17 +54,18 @@ impl FrameContext<'_> {
     }
 }
 
-/// Renders a picture, and keeps the steps of the visibility algorithm with one sample a pixel. At
-/// `watched` each comparison of the z-buffer is kept.
+/// Renders a picture, and keeps the steps of the visibility algorithm with one sample a pixel: all,
+/// or with `most_bytes` the first that take no more memory.
 ///
 /// # Errors
-/// As [`render`]; [`Limit::Memory`](vitral_exec::Limit::Memory) if the steps are too many.
+/// As [`render`]; without `most_bytes` [`Limit::Memory`](vitral_exec::Limit::Memory) if the steps
+/// are too many for the budget.
 pub fn watch_steps(
     session: &mut Session,
     shot: &Shot<'_>,
     settings: &Settings,
     execution: &Execution,
-    watched: Option<[u32; 2]>,
+    most_bytes: Option<u64>,
 ) -> Result<WatchedSteps, Error> {
     let settings = &settings.clone().with_channels(Channels::default());
     let unwatched = Execution { observer: None, ..execution.clone() };
@@ -73,10 +75,17 @@ pub fn watch_steps(
     // Look on while it finds the surfaces.
     let viewport = settings.check()?;
     let context = FrameContext { shot, settings, viewport, execution: &unwatched };
-    let collector = Arc::new(Collector::new(execution.budget.clone(), watched));
+    let budget = match most_bytes {
+        Some(_) => Budget::default().with_memory_limit(most_bytes),
+        None => execution.budget.clone(),
+    };
+    let collector = Arc::new(Collector::new(budget, None));
     let seen = SeenFacets::new(viewport);
     context.resolve_watched(session, Arc::clone(&collector) as Arc<dyn Observer>, &seen)?;
-    let steps = collector.take()?;
+    let (steps, more) = match most_bytes {
+        Some(_) => collector.take_first(),
+        None => (collector.take()?, false),
+    };
 
     // Name surfaces instead of facets: a polygon is of several.
     let surface = |facet: u32| session.world().surface_of_facet(facet);
@@ -93,7 +102,7 @@ pub fn watch_steps(
     let picture = &settings.picture;
     let background = (picture.background, viewport.height, picture.color_space == ColorSpace::Raw);
     let background = BackgroundRows::new(&background).bytes;
-    Ok(WatchedSteps { steps, image, background, seen, drawn })
+    Ok(WatchedSteps { steps, more, image, background, seen, drawn })
 }
 
 /// Keeps the opaque facet that is seen at each pixel.

@@ -56,10 +56,23 @@ impl Collector {
     /// # Errors
     /// [`Limit::Memory`] if they were too many.
     pub fn take(&self) -> Result<Vec<NumberedStep>, Limit> {
+        let kept = self.recorded();
+        kept.limit.map_or_else(|| Ok(numbered(kept.steps)), Err)
+    }
+
+    /// Takes the steps that were told until the memory of the budget was full, and whether more
+    /// followed.
+    pub fn take_first(&self) -> (Vec<NumberedStep>, bool) {
+        let kept = self.recorded();
+        (numbered(kept.steps), kept.limit.is_some())
+    }
+
+    /// What was recorded, which is charged to the budget no more.
+    fn recorded(&self) -> RecordedSteps {
         let kept =
             std::mem::take(&mut *self.kept.lock().expect("no thread panics while it keeps a step"));
         self.budget.release(kept.charged);
-        kept.limit.map_or_else(|| Ok(numbered(kept.steps)), Err)
+        kept
     }
 }
 
@@ -385,5 +398,16 @@ mod tests {
         assert!(matches!(collector.take(), Err(Limit::Memory { .. })));
         collector.step(&window(""));
         assert_eq!(collector.take().unwrap().len(), 1, "what was charged is released");
+    }
+
+    #[test]
+    fn the_first_steps_are_kept_where_more_do_not_fit() {
+        let budget = Budget::default().with_memory_limit(Some(2000));
+        let collector = Collector::new(budget, None);
+        (0..100).for_each(|_| collector.step(&window("0123")));
+        let (first, more) = collector.take_first();
+        assert!(more && (2..100).contains(&first.len()), "{}", first.len());
+        collector.step(&window(""));
+        assert!(matches!(collector.take_first(), (all, false) if all.len() == 1));
     }
 }

@@ -20,6 +20,8 @@ use vitral_frame::Plane;
 pub struct WatchedSteps {
     /// The steps, in order.
     pub steps: Vec<NumberedStep>,
+    /// Whether more steps followed, for which there was no memory.
+    pub more: bool,
     /// The finished picture, display colour.
     pub image: Plane<[u8; 4]>,
     /// The background of each row, display colour.
@@ -244,7 +246,7 @@ mod tests {
         let image = Plane::from_rows(4, 1, vec![RED; 4]).unwrap();
         let seen = vec![Some(7), Some(7), Some(8), Some(8)];
         let (background, drawn) = (vec![[9; 4]], vec![Some(7), Some(8)]);
-        let watched = WatchedSteps { steps, image, background, seen, drawn };
+        let watched = WatchedSteps { steps, more: false, image, background, seen, drawn };
         let mut replay = Replay::new(&watched);
         assert_eq!(replay.picture().data(), [[9; 4]; 4]);
         replay.go_to(0);
@@ -275,7 +277,7 @@ mod tests {
         let image = Plane::from_rows(4, 4, vec![RED; 16]).unwrap();
         let (steps, background, seen, drawn) =
             (steps.collect(), vec![[9; 4]; 4], vec![None; 16], vec![None; 2]);
-        let watched = WatchedSteps { steps, image, background, seen, drawn };
+        let watched = WatchedSteps { steps, more: false, image, background, seen, drawn };
         let mut replay = Replay::new(&watched);
         replay.go_to(0);
         assert!(

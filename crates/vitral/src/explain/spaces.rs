@@ -2,9 +2,11 @@
 
 use crate::{Error, Renderer};
 use serde::Serialize;
+use vitral_math::Vec4;
 use vitral_raster::SUBPIXEL;
+use vitral_render::PreparedView;
 use vitral_render::stats::CullCounters;
-use vitral_scene::Camera;
+use vitral_scene::{Camera, World};
 
 /// Corners in each space of the pipeline. Clipping may add corners or take them away, so that there
 /// are others from clip space on.
@@ -34,13 +36,7 @@ pub struct FacetSpaces {
 /// Settings that cannot be; a facet that the scene has not.
 pub fn spaces(renderer: &Renderer, camera: &Camera, facet: u32) -> Result<FacetSpaces, Error> {
     let world = renderer.world();
-    if world
-        .instances
-        .last()
-        .is_none_or(|last| facet >= last.first_facet + last.mesh.triangles.len() as u32)
-    {
-        return Err(Error::usage(format!("there is no facet {facet}"), ""));
-    }
+    check_facet(world, facet)?;
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let instance = &world.instances[world.instance_of_facet(facet)];
     let vertices = instance.mesh.triangles[(facet - instance.first_facet) as usize];
@@ -49,14 +45,7 @@ pub fn spaces(renderer: &Renderer, camera: &Camera, facet: u32) -> Result<FacetS
 
     // Clip, divide, snap.
     let clip = view.clipped(facet).map_or(Vec::new(), |(corners, _)| corners);
-    let screen = clip.iter().map(|corner| {
-        let at = view.screen.transform().project(*corner);
-        [
-            f64::from(at.x) / f64::from(SUBPIXEL),
-            f64::from(at.y) / f64::from(SUBPIXEL),
-            f64::from(corner.z / corner.w),
-        ]
-    });
+    let screen = clip.iter().map(|corner| on_screen(&view, *corner));
     Ok(FacetSpaces {
         facet,
         model: vertices.map(|v| instance.mesh.positions[v as usize].map(f64::from)),
@@ -69,6 +58,42 @@ pub fn spaces(renderer: &Renderer, camera: &Camera, facet: u32) -> Result<FacetS
             .collect(),
         clip: clip.iter().map(|corner| corner.to_array()).collect(),
     })
+}
+
+/// The outlines of facets in the picture that `camera` sees: corners in pixels from the top left,
+/// after clipping; empty for a facet out of view.
+///
+/// # Errors
+/// Settings that cannot be; a facet that the scene has not.
+pub fn facet_outlines(
+    renderer: &Renderer,
+    camera: &Camera,
+    facets: &[u32],
+) -> Result<Vec<Vec<[f64; 2]>>, Error> {
+    facets.iter().try_for_each(|&facet| check_facet(renderer.world(), facet))?;
+    let view = renderer.prepared(camera, &mut CullCounters::default())?;
+    let outline = |&facet: &u32| {
+        let clip = view.clipped(facet).map_or(Vec::new(), |(corners, _)| corners);
+        clip.into_iter()
+            .map(|corner| {
+                let [x, y, _] = on_screen(&view, corner);
+                [x, y]
+            })
+            .collect()
+    };
+    Ok(facets.iter().map(outline).collect())
+}
+
+/// Pixels from the top left, snapped to 1/256, and the depth.
+fn on_screen(view: &PreparedView<'_>, clip: Vec4) -> [f64; 3] {
+    let at = view.screen.transform().project(clip);
+    let pixel = [at.x, at.y].map(|v| f64::from(v) / f64::from(SUBPIXEL));
+    [pixel[0], pixel[1], f64::from(clip.z / clip.w)]
+}
+
+pub(super) fn check_facet(world: &World, facet: u32) -> Result<(), Error> {
+    let count = world.instances.last().map_or(0, |i| i.first_facet + i.mesh.triangles.len() as u32);
+    if facet < count { Ok(()) } else { Err(Error::usage(format!("there is no facet {facet}"), "")) }
 }
 
 #[cfg(test)]
@@ -107,6 +132,9 @@ mod tests {
                     && (ny * half * -z - y).abs() < 1e-6 * -z
             );
         }
+        let outlines = facet_outlines(&renderer, &camera, &[seen]).unwrap();
+        assert!(outlines[0].iter().zip(&told.screen).all(|(p, q)| p[..] == q[..2]));
         assert!(spaces(&renderer, &camera, u32::MAX).is_err());
+        assert!(facet_outlines(&renderer, &camera, &[0, u32::MAX]).is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! Explanations as text.
 
-use super::{Explanation, Gouraud, TracedRay};
+use super::{CornerNormal, Explanation, Gouraud, TracedRay};
 use std::fmt;
 use vitral_light::{Highlight, LightTerms};
 use vitral_render::shading::pixel_light::{
@@ -49,6 +49,7 @@ impl fmt::Display for Explanation {
 
         // Show the interpolation of Gouraud shading.
         if let Some(gouraud) = &self.gouraud {
+            self.normals.iter().try_for_each(|corner| write!(f, "{corner}"))?;
             write!(f, "{gouraud}")?;
         }
 
@@ -289,6 +290,25 @@ impl fmt::Display for TracedRay {
             let bent = format!("at {before:.4} degrees in {n1}, goes on at {after:.4} in {n2}");
             let (direction, weight) = (three(turn.direction), rgb(turn.weight));
             writeln!(f, "    {} {bent}, towards {direction}; counts {weight}", turn.way.name())?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for CornerNormal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vector = |[x, y, z]: [f32; 3]| format!("{x:.6} {y:.6} {z:.6}");
+        let (result, mean) = (vector(self.result), vector(self.mean));
+        writeln!(
+            f,
+            "normal at corner {} (vertex {}): {result}; mean of {} face(s): {mean}",
+            self.corner,
+            self.vertex,
+            self.faces.len()
+        )?;
+        for face in &self.faces {
+            let normal = vector(face.normal);
+            writeln!(f, "  surface {}: {normal}, {:.1} degrees", face.surface, face.angle_degrees)?;
         }
         Ok(())
     }

@@ -80,7 +80,7 @@ function matrices(app: App): unknown {
   const rows = (m: number[][]) => m.map((row) => row.map((v) => String(Number(v.toFixed(4)) || 0)));
   const matrix = (m: number[][], name: string) => html`<div role="group" aria-label=${name}>
     <span class="label">${name}</span>
-    <math><mrow><mo>(</mo><mtable>${rows(m).map((row) => mathml`<mtr>${row.map((v) => mathml`<mtd><mn>${v}</mn></mtd>`)}</mtr>`)}</mtable><mo>)</mo></mrow></math>
+    <math><mtable>${rows(m).map((row) => mathml`<mtr>${row.map((v) => mathml`<mtd><mn>${v}</mn></mtd>`)}</mtr>`)}</mtable></math>
   </div>`;
   return html`<section class="matrices" role="group" aria-label=${t("Matrices")}>
     <p class="label">${t("Matrices")}: ${t("view")} · ${t("objects")} = ${t("product")}</p>

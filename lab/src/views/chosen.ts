@@ -135,12 +135,20 @@ export function chosenWords(app: App): unknown {
   </p>`;
 }
 
-/** The outlines of the chosen facets in pixels, as a path; empty where there is none. */
+/** The outline of the chosen facets in pixels, as a path; empty where there is none. */
 export function chosenPath(app: App): string {
   if (!app.chosen) return "";
-  return chosenFacets(app)
-    .all.map((f) => outlinePath(f["outline"]))
-    .join("");
+  // Leave out edges between two facets of the face.
+  const edges = new Map<string, string | null>();
+  for (const facet of chosenFacets(app).all) {
+    const corners = (Array.isArray(facet["outline"]) ? facet["outline"] : []).map((c) => (c as number[]).map((v) => v.toFixed(2)).join(" "));
+    corners.forEach((from, i) => {
+      const to = corners[(i + 1) % corners.length]!;
+      const key = from < to ? `${from} ${to}` : `${to} ${from}`;
+      edges.set(key, edges.has(key) ? null : `M${from}L${to}`);
+    });
+  }
+  return [...edges.values()].filter(Boolean).join("");
 }
 
 /** A closed path along corners. */

@@ -115,13 +115,18 @@ fn numbers(evaluation: &Evaluation, told: &Explanation) -> String {
             "<mrow><mo>(</mo>{ambient}<mo>+</mo>{s}<mo>·</mo>{f}<mo>·</mo><mo>(</mo>{lit}<mo>)</mo><mo>)</mo></mrow>"
         ));
     }
-    let sum = evaluation.diffuse[GREEN] + evaluation.specular[GREEN];
+
+    // Write a line for each term, then their sum.
+    let sum = number(evaluation.diffuse[GREEN] + evaluation.specular[GREEN]);
     let byte = told.light.bytes[GREEN];
+    let line = |left: &str, sign: &str, right: &str| {
+        format!("<mtr><mtd>{left}</mtd><mtd><mo>{sign}</mo></mtd><mtd>{right}</mtd></mtr>")
+    };
+    let mut lines = line("<msub><mi>I</mi><mtext>green</mtext></msub>", "=", &terms[0]);
+    lines.extend(terms[1..].iter().map(|term| line("", "+", term)));
+    lines += &line("", "=", &format!("{sum}<mo>→</mo><mn>{byte}</mn>"));
     format!(
-        "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\"><msub><mi>I</mi><mtext>green</mtext></msub><mo>=</mo>{}\
-         <mo>=</mo>{}<mo>→</mo><mn>{byte}</mn></math>",
-        terms.join("<mo>+</mo>"),
-        number(sum)
+        "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\"><mtable>{lines}</mtable></math>"
     )
 }
 

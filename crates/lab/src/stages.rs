@@ -130,6 +130,11 @@ pub(crate) fn info(renderer: &mut Renderer) -> Answer {
     let all = serde_json::to_value(&info).map_err(|e| Error::usage(e.to_string(), ""))?;
     let simple = |(name, value): (&String, &Value)| match value {
         Value::Number(_) | Value::Bool(_) => Some(json!({"name": name, "value": value})),
+        // A colour has its numbers, a list its length.
+        Value::Array(list) if !list.is_empty() && list.iter().all(Value::is_number) => {
+            let numbers: Vec<String> = list.iter().map(Value::to_string).collect();
+            Some(json!({"name": name, "value": numbers.join(" ")}))
+        }
         Value::Array(list) if name != "warnings" => {
             Some(json!({"name": name, "value": list.len()}))
         }

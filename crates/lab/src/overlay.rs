@@ -38,6 +38,7 @@ pub(crate) fn drawing(recording: &Recording, at: usize) -> Result<String, Error>
         format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
     let step = &recording.watched.steps[at].step;
     match step {
+        // Draw the windows, rows and blocks of algorithms that work on areas.
         Step::Window { pixels, verdict, .. } => {
             let verdict = serde_json::to_value(verdict).unwrap_or_default();
             rectangle(
@@ -60,6 +61,8 @@ pub(crate) fn drawing(recording: &Recording, at: usize) -> Result<String, Error>
                 );
             }
         }
+
+        // Draw the pixels that a facet, a comparison or a ray is about.
         Step::Drawn { stays, hidden, .. } => {
             runs(&mut svg, hidden, "hidden");
             runs(&mut svg, stays, "stays");
@@ -72,6 +75,8 @@ pub(crate) fn drawing(recording: &Recording, at: usize) -> Result<String, Error>
             pixels.dedup();
             pixels.iter().for_each(|[x, y]| rectangle(&mut svg, [*x, *y, 1, 1], "pixel"));
         }
+
+        // Draw the polygons of lists and trees.
         Step::Piece { facet, outline, .. } => polygon(&mut svg, outline, "piece", *facet),
         Step::Clip { facet, outline, cut, .. } => clip(&mut svg, *facet, outline, cut),
         Step::Visible { facet, contours, .. } => path(&mut svg, contours, "visible", *facet),

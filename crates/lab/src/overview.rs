@@ -68,6 +68,8 @@ pub(crate) fn overview(renderer: &mut Renderer, asked: &Asked<'_>) -> Answer {
         );
     }
     screen.cuboid(&mut svg, volume, "volume", "");
+
+    // Draw the lights that have a place.
     for light in lights.iter().filter(|light| light.enabled) {
         match &light.kind {
             LightKind::Point { position } => {

@@ -87,6 +87,8 @@ pub(super) fn gouraud(
         (&renderer.picture_settings(), renderer.session(), renderer.execution());
     let view = renderer.prepared(camera, &mut CullCounters::default())?;
     let Some((clip, false)) = view.clipped(facet) else { return Ok(None) };
+
+    // Illuminate the corners, and find where they are on the screen.
     let lights = renderer.frame_lights(camera);
     let shot = renderer.shot(camera, &lights);
     let lit = illuminate_corners(session, &shot, settings, execution, Some(facet))?;

@@ -17,8 +17,8 @@ export type History = "replace" | "push";
 /** Milliseconds of rest before work that is not urgent begins. */
 const REST = 150;
 
-/** A frame that takes longer than this is drawn coarser while something is dragged. */
-const COARSE_ABOVE = 0.025;
+/** Seconds of a picture above which it is drawn coarser while something is dragged: a display has 60 frames a second. */
+const COARSE_ABOVE = 0.012;
 
 const CHANNELS = ["depth", "surface", "object", "material", "normal", "steps", "attached-shadow", "cast-shadow"];
 

@@ -116,7 +116,7 @@ test("the increments of all lines and the normals at the corners are told", asyn
   assert.equal(await increments.locator("tr[aria-current]").getByRole("rowheader").textContent(), "50");
   const normals = page.getByRole("table", { name: "Normals at the corners" });
   await normals.getByRole("rowheader", { name: "result" }).waitFor();
-  const corner = page.getByRole("combobox", { name: "Corner" });
+  const corner = page.getByRole("combobox", { name: "Corner", exact: true });
   assert.equal(await corner.getByRole("option").count(), 3);
   await corner.selectOption({ index: 2 });
   await normals.getByRole("rowheader", { name: "mean of the faces" }).waitFor();

@@ -28,6 +28,9 @@ function interval({ origin, direction }: Ray, min: number[], max: number[]): [nu
   return to >= from && Number.isFinite(to) ? [from, to] : null;
 }
 
+/** A node or cell by its number, the root of an octree by its word. */
+export const partName = (p: JsonObject) => (p["name"] === "" ? t("root") : t("part {0}", String(p["name"])));
+
 const MOST = 18;
 const ROW = 15;
 
@@ -56,8 +59,8 @@ export function accelerationDrawing(app: App, answer: JsonObject): TemplateResul
     const level = levels.get(p["id"] ?? null) ?? 0;
     const facet = isHit(p) ? Number(hit) : facets[0];
     const style = `${isHit(p) ? "hit" : facets.length ? "tested" : "opened"}${facets.some((f) => isChosen(app, f)) ? " chosen" : ""}`;
-    return svg`<g class=${style} data-facet=${String(facet ?? "")}><title>${`${String(p["name"])}: ${facets.join(", ") || "–"}`}</title>
-      <text x=${3 + Math.min(level, 8) * 3} y=${y + 11}>${String(p["name"]).slice(0, 15)}</text>
+    return svg`<g class=${style} data-facet=${String(facet ?? "")}><title>${`${partName(p)}: ${facets.join(", ") || "–"}`}</title>
+      <text x=${3 + Math.min(level, 8) * 3} y=${y + 11}>${partName(p).slice(0, 14)}</text>
       ${span ? svg`<rect x=${short(X(span[0]))} y=${y + 2} width=${short(Math.max(2, X(span[1]) - X(span[0])))} height=${ROW - 4} rx="2" />` : nothing}</g>`;
   };
   const depth = typeof distance === "number" ? distance : null;

@@ -333,10 +333,11 @@ function rayCast(app: App, step: Step): unknown {
   let content: unknown = nothing;
   if (parts.some((p) => p["parent"] !== null)) {
     // Facets hang below the part in which they were tested.
-    const nodes: Node[] = parts.flatMap((p, i): Node[] => {
+    let last = 0;
+    const nodes: Node[] = parts.flatMap((p): Node[] => {
       const id = Number(p["id"]);
       const own: Node = { id, parent: typeof p["parent"] === "number" ? p["parent"] : null, text: () => partName(p) };
-      return [own, ...numbers(p["facets"]).map((facet, k): Node => ({ id: -1 - i * 10000 - k, parent: id, text: () => facetWords(facet), facet, choice: () => choiceOf(app, facet) }))];
+      return [own, ...numbers(p["facets"]).map((facet): Node => ({ id: (last -= 1), parent: id, text: () => facetWords(facet), facet, choice: () => choiceOf(app, facet) }))];
     });
     content = labelledTree(app, name, nodes, nodes.find((n) => n.facet !== undefined && n.facet === hit)?.id ?? null);
   } else if (parts.length) {

@@ -64,7 +64,9 @@ export function accelerationDrawing(app: App, answer: JsonObject): TemplateResul
       ${span ? svg`<rect x=${short(X(span[0]))} y=${y + 2} width=${short(Math.max(2, X(span[1]) - X(span[0])))} height=${ROW - 4} rx="2" />` : nothing}</g>`;
   };
   const depth = typeof distance === "number" ? distance : null;
-  const line = depth === null || depth < near || depth > far ? nothing : svg`<path class="hit-line" d=${`M${short(X(depth))} 18V${height - 4}`} />`;
+  // A hit on the side of a box may lie a rounding error before it.
+  const slack = (far - near) * 1e-3;
+  const line = depth === null || depth < near - slack || depth > far + slack ? nothing : svg`<path class="hit-line" d=${`M${short(X(depth))} 18V${height - 4}`} />`;
   return sheet(app, {
     name: t("Drawing of the acceleration structure"),
     height,

@@ -774,6 +774,7 @@ const PAGE = {
   "The ray hits facet {0}.": ["Raza lovește fațeta {0}.", "Le rayon touche la facette {0}.", "O raio atinge a faceta {0}."],
   "The ray hits nothing.": ["Raza nu lovește nimic.", "Le rayon ne touche rien.", "O raio não atinge nada."],
   part: ["parte", "partie", "parte"],
+  "part {0}": ["partea {0}", "partie {0}", "parte {0}"],
   from: ["de la", "de", "de"],
   to: ["până la", "à", "até"],
   hit: ["lovit", "touché", "atingido"],

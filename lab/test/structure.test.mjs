@@ -53,7 +53,7 @@ test("a facet that is chosen in one place is chosen in all", async (page) => {
 
   // A row of the list chooses the facet, and choosing it once more takes that back.
   const list = structure.getByRole("list", { name: "Depth-sort list" });
-  const row = list.getByRole("button", { name: /waits/ }).last();
+  const row = list.getByRole("button", { name: /waits/ }).first();
   await row.click();
   await eventually(() => row.getAttribute("aria-pressed"), "true");
   const facet = /facet (\d+)/.exec(await row.textContent())[1];
@@ -116,7 +116,7 @@ test("the increments of all lines and the normals at the corners are told", asyn
   assert.equal(await increments.locator("tr[aria-current]").getByRole("rowheader").textContent(), "50");
   const normals = page.getByRole("table", { name: "Normals at the corners" });
   await normals.getByRole("rowheader", { name: "result" }).waitFor();
-  const corner = page.getByRole("combobox", { name: "Corner" });
+  const corner = page.getByRole("combobox", { name: "Corner", exact: true });
   assert.equal(await corner.getByRole("option").count(), 3);
   await corner.selectOption({ index: 2 });
   await normals.getByRole("rowheader", { name: "mean of the faces" }).waitFor();

@@ -21,7 +21,7 @@ import { bspDrawing } from "./drawings/bsp-tree.ts";
 import { clipDrawing } from "./drawings/clip.ts";
 import { blockDrawing, bruteForceDrawing, depthsDrawing } from "./drawings/depths.ts";
 import { quadtreeDrawing } from "./drawings/quadtree.ts";
-import { accelerationDrawing, rayTreeDrawing } from "./drawings/rays.ts";
+import { accelerationDrawing, partName, rayTreeDrawing } from "./drawings/rays.ts";
 import { edgesDrawing } from "./drawings/scan-line.ts";
 import { listDrawing, sortedList, type EntryState } from "./drawings/sorted-list.ts";
 import { hasOwnRays, rayTree } from "./pixel.ts";
@@ -333,10 +333,11 @@ function rayCast(app: App, step: Step): unknown {
   let content: unknown = nothing;
   if (parts.some((p) => p["parent"] !== null)) {
     // Facets hang below the part in which they were tested.
-    const nodes: Node[] = parts.flatMap((p, i): Node[] => {
+    let last = 0;
+    const nodes: Node[] = parts.flatMap((p): Node[] => {
       const id = Number(p["id"]);
-      const own: Node = { id, parent: typeof p["parent"] === "number" ? p["parent"] : null, text: () => String(p["name"]) };
-      return [own, ...numbers(p["facets"]).map((facet, k): Node => ({ id: -1 - i * 10000 - k, parent: id, text: () => facetWords(facet), facet, choice: () => choiceOf(app, facet) }))];
+      const own: Node = { id, parent: typeof p["parent"] === "number" ? p["parent"] : null, text: () => partName(p) };
+      return [own, ...numbers(p["facets"]).map((facet): Node => ({ id: (last -= 1), parent: id, text: () => facetWords(facet), facet, choice: () => choiceOf(app, facet) }))];
     });
     content = labelledTree(app, name, nodes, nodes.find((n) => n.facet !== undefined && n.facet === hit)?.id ?? null);
   } else if (parts.length) {
@@ -345,7 +346,7 @@ function rayCast(app: App, step: Step): unknown {
     content = table({
       name,
       columns: [t("part"), t("facets"), t("from"), t("to"), t("hit")],
-      rows: parts.map((p) => [String(p["name"]), facets(p["facets"]), corner(p["min"]), corner(p["max"]), holdsHit(p) ? t("facet {0}", Number(hit)) : "–"]),
+      rows: parts.map((p) => [partName(p), facets(p["facets"]), corner(p["min"]), corner(p["max"]), holdsHit(p) ? t("facet {0}", Number(hit)) : "–"]),
       ...rowsOf(app, parts.map((p) => (holdsHit(p) ? hit : numbers(p["facets"])[0]))),
       current: parts.findIndex(holdsHit),
       caption: true,

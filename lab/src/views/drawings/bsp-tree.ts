@@ -4,7 +4,7 @@ import { nothing, type TemplateResult } from "lit-html";
 import type { App } from "../../app.ts";
 import type { JsonObject } from "../../json.ts";
 import { t } from "../../words.ts";
-import { isChosen } from "../chosen.ts";
+import { chosenFinder, isChosen } from "../chosen.ts";
 import { doneOf } from "../recorded.ts";
 import { leftOutOf, links, type LinkedNode } from "./links.ts";
 import { sheet } from "./sheet.ts";
@@ -31,7 +31,10 @@ export function bspDrawing(app: App, present: JsonObject): TemplateResult | type
       };
     },
   }));
-  const drawn = links(nodes, typeof present["node"] === "number" ? present["node"] : null);
+  const current = typeof present["node"] === "number" ? present["node"] : null;
+  const finder = chosenFinder(app);
+  const chosen = finder ? all.find((s) => typeof s["splitter"] === "number" && finder(s["splitter"])) : undefined;
+  const drawn = links(nodes, current, chosen ? Number(chosen["node"]) : current);
   return sheet(app, {
     name: t("Drawing of the BSP tree"),
     height: drawn.height,

@@ -39,7 +39,8 @@ export interface Links {
   leftOut: number;
 }
 
-export function links(nodes: LinkedNode[], current: number | null): Links {
+/** Draws the tree round a node: the present one, or `center`. */
+export function links(nodes: LinkedNode[], current: number | null, center = current): Links {
   const byId = new Map(nodes.map((n) => [n.id, n]));
   const children = new Map<number, LinkedNode[]>();
   for (const n of nodes) {
@@ -49,18 +50,18 @@ export function links(nodes: LinkedNode[], current: number | null): Links {
   }
   const below = (id: number) => (children.get(id) ?? []).sort((a, b) => (a.side ?? 0) - (b.side ?? 0));
 
-  // Go up from the present node, or begin at the root.
+  // Go up from that node, or begin at the root.
   const parentOf = (id: number) => {
     const parent = byId.get(id)?.parent ?? null;
     return parent !== null && byId.has(parent) ? parent : null;
   };
   const way: number[] = [];
-  for (let at = current !== null && byId.has(current) ? current : (nodes[0]?.id ?? null); at !== null; at = parentOf(at)) way.unshift(at);
+  for (let at = center !== null && byId.has(center) ? center : (nodes[0]?.id ?? null); at !== null; at = parentOf(at)) way.unshift(at);
   const above = way.length <= MOST_LEVELS ? 0 : way.length - 1 - MOST_ABOVE;
   const root = way[above];
   if (root === undefined) return { content: svg``, height: 0, above: 0, leftOut: 0 };
 
-  // Open the way to the present node, then level by level while the ends fit.
+  // Open the way to it, then level by level while the ends fit.
   const opened = new Set<number>();
   let ends = 1;
   const open = (id: number) => {

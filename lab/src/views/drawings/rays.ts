@@ -2,31 +2,17 @@
 
 import { nothing, svg, type TemplateResult } from "lit-html";
 import type { App } from "../../app.ts";
-import { unproject, type Vector } from "../../camera.ts";
 import { isObject, type Json, type JsonObject } from "../../json.ts";
 import { t } from "../../words.ts";
 import { isChosen } from "../chosen.ts";
-import { eyeOf } from "../picture.ts";
-import { explanationOf, rayNodes } from "../pixel.ts";
+import { rayNodes } from "../pixel.ts";
 import { leftOut, numbers, objects } from "../recorded.ts";
 import { leftOutOf, links } from "./links.ts";
 import { around, sheet, short, WIDTH } from "./sheet.ts";
 
 interface Ray {
-  origin: Vector;
-  /** From the origin to depth 1 in front of the eye. */
-  direction: Vector;
-}
-
-/** The ray through the centre of the inspected pixel. */
-function rayOf(app: App): Ray | null {
-  const eye = eyeOf(app);
-  const { pixel } = app.lab;
-  if (!eye || !pixel) return null;
-  const [x, y] = [(pixel[0] + 0.5) / app.width, (pixel[1] + 0.5) / app.height];
-  const origin = eye.parallelHeight === null ? eye.position : unproject(eye, x, y, 0);
-  const direction = unproject(eye, x, y, 1).map((v, i) => v - origin[i]!) as Vector;
-  return { origin, direction };
+  origin: number[];
+  direction: number[];
 }
 
 /** Where a ray goes into a box and where it leaves it, by the slabs of the three axes. */
@@ -42,25 +28,18 @@ function interval({ origin, direction }: Ray, min: number[], max: number[]): [nu
   return to >= from && Number.isFinite(to) ? [from, to] : null;
 }
 
-/** The point of the surface that is seen, as a depth along the ray. */
-function depthOfHit(app: App, ray: Ray): number | null {
-  const light = explanationOf(app)?.["light"];
-  const world = isObject(light) ? numbers(objects(light["points"])[0]?.["world"]) : [];
-  if (world.length < 3) return null;
-  const dot = (a: number[], b: number[]) => a.reduce((sum, v, i) => sum + v * b[i]!, 0);
-  const from = world.map((v, i) => v - ray.origin[i]!);
-  return dot(from, ray.direction) / dot(ray.direction, ray.direction);
-}
+/** A node or cell by its number, the root of an octree by its word. */
+export const partName = (p: JsonObject) => (p["name"] === "" ? t("root") : t("part {0}", String(p["name"])));
 
 const MOST = 18;
 const ROW = 15;
 
 /** A bar for each part that the ray opened, from where the ray goes in to where it leaves. */
 export function accelerationDrawing(app: App, answer: JsonObject): TemplateResult | typeof nothing {
-  const ray = rayOf(app);
+  const { hit, ray: told, distance } = answer;
   const parts = objects(answer["parts"]);
-  if (!ray || !parts.length) return nothing;
-  const { hit } = answer;
+  if (!isObject(told) || !parts.length) return nothing;
+  const ray = { origin: numbers(told["origin"]), direction: numbers(told["direction"]) };
   const isHit = (p: JsonObject) => typeof hit === "number" && numbers(p["facets"]).includes(hit);
   const levels = new Map<Json, number>();
   for (const p of parts) levels.set(p["id"] ?? null, p["parent"] === null ? 0 : (levels.get(p["parent"] ?? null) ?? -1) + 1);
@@ -80,12 +59,14 @@ export function accelerationDrawing(app: App, answer: JsonObject): TemplateResul
     const level = levels.get(p["id"] ?? null) ?? 0;
     const facet = isHit(p) ? Number(hit) : facets[0];
     const style = `${isHit(p) ? "hit" : facets.length ? "tested" : "opened"}${facets.some((f) => isChosen(app, f)) ? " chosen" : ""}`;
-    return svg`<g class=${style} data-facet=${String(facet ?? "")}><title>${`${String(p["name"])}: ${facets.join(", ") || "–"}`}</title>
-      <text x=${3 + Math.min(level, 8) * 3} y=${y + 11}>${String(p["name"]).slice(0, 15)}</text>
+    return svg`<g class=${style} data-facet=${String(facet ?? "")}><title>${`${partName(p)}: ${facets.join(", ") || "–"}`}</title>
+      <text x=${3 + Math.min(level, 8) * 3} y=${y + 11}>${partName(p).slice(0, 14)}</text>
       ${span ? svg`<rect x=${short(X(span[0]))} y=${y + 2} width=${short(Math.max(2, X(span[1]) - X(span[0])))} height=${ROW - 4} rx="2" />` : nothing}</g>`;
   };
-  const depth = typeof hit === "number" ? depthOfHit(app, ray) : null;
-  const line = depth === null || depth < near || depth > far ? nothing : svg`<path class="hit-line" d=${`M${short(X(depth))} 18V${height - 4}`} />`;
+  const depth = typeof distance === "number" ? distance : null;
+  // A hit on the side of a box may lie a rounding error before it.
+  const slack = (far - near) * 1e-3;
+  const line = depth === null || depth < near - slack || depth > far + slack ? nothing : svg`<path class="hit-line" d=${`M${short(X(depth))} 18V${height - 4}`} />`;
   return sheet(app, {
     name: t("Drawing of the acceleration structure"),
     height,

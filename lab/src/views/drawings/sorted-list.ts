@@ -4,7 +4,7 @@ import { nothing, svg, type TemplateResult } from "lit-html";
 import type { App } from "../../app.ts";
 import type { Json, JsonObject } from "../../json.ts";
 import { t } from "../../words.ts";
-import { isChosen } from "../chosen.ts";
+import { chosenFinder, isChosen } from "../chosen.ts";
 import { doneOf, leftOut, numbers, objects, stepsOf, wholeStep } from "../recorded.ts";
 import { around, sheet } from "./sheet.ts";
 
@@ -98,7 +98,10 @@ const ROW = 18;
 export function listDrawing(app: App, present: JsonObject, { first, list }: SortedList): TemplateResult | typeof nothing {
   if (!list.length) return nothing;
   const current = Number(present["polygon"] ?? list[0]!.polygon);
-  const find = (all: Entry[]) => Math.max(0, all.findIndex((e) => e.polygon === current));
+  // Show the entries round the chosen one, or round the present one.
+  const finder = chosenFinder(app);
+  const chosen = finder ? list.find((e) => e.facet !== null && finder(e.facet)) : undefined;
+  const find = (all: Entry[]) => Math.max(0, all.findIndex((e) => e.polygon === (chosen?.polygon ?? current)));
   const left = around(first, find(first), MOST);
   const right = around(list, find(list), MOST);
   const height = 24 + MOST * ROW + 4;

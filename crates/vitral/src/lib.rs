@@ -61,6 +61,7 @@ mod error;
 mod exercise;
 pub mod explain;
 mod files;
+mod framed_camera;
 pub mod info;
 pub mod internals;
 mod light_edit;

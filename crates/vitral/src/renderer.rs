@@ -1,5 +1,6 @@
 //! The short way from a model or scene to pictures.
 
+use crate::framed_camera::{FramedCamera, Framing};
 use crate::{
     Channel, Error, LightEdit, LightTerm, LoadOptions, Picture, SystemClock, Viewpoint,
     environment, load_on,
@@ -70,6 +71,7 @@ pub struct Renderer {
     /// The image that was read last, and its file.
     environment_file: Option<(String, Arc<EnvironmentMap>)>,
     session: Session,
+    framed: FramedCamera,
     /// Light on the scene's surfaces, for the exposure of its photometric lights.
     meter: LightMeter,
     execution: Execution,
@@ -174,6 +176,7 @@ impl Renderer {
             ambient: [0.0; 3],
             environment_image: None,
             environment_file: None,
+            framed: FramedCamera::default(),
             meter: LightMeter::read(session.world()),
             session,
             execution,
@@ -212,6 +215,7 @@ impl Renderer {
     /// A scene whose parts do not fit together; the old one stays.
     pub fn set_scene(&mut self, scene: Scene) -> Result<(), Error> {
         self.session = Session::with_workers(Arc::new(scene), &self.execution.workers)?;
+        self.framed = FramedCamera::default();
         self.meter = LightMeter::read(self.session.world());
         Ok(())
     }
@@ -224,6 +228,7 @@ impl Renderer {
     /// A node that is not there, and a transform that is not affine; nothing is moved then.
     pub fn place(&mut self, nodes: &[(u32, DMat4)]) -> Result<(), Error> {
         self.session.place(nodes)?;
+        self.framed = FramedCamera::default();
         self.meter = LightMeter::read(self.session.world());
         Ok(())
     }
@@ -239,6 +244,7 @@ impl Renderer {
             environment_image: self.environment_image.clone(),
             environment_file: self.environment_file.clone(),
             session: self.session.fork(),
+            framed: FramedCamera::default(),
             execution: Execution { workers: Workers::single(), ..self.execution.clone() },
             ..*self
         }
@@ -275,16 +281,11 @@ impl Renderer {
     /// It frames the vertices rather than the box round them, which leaves room where the box's
     /// corners are empty.
     pub(crate) fn framed_from(&self, eye: DVec3, view_up: DVec3) -> Camera {
-        let (lens, aspect) = (self.lens, self.aspect());
-        framing::frame_world(
-            self.world(),
-            eye,
-            view_up,
-            lens,
-            aspect,
-            framing::FILL,
-            &self.execution.workers,
-        )
+        let (lens, aspect, workers) = (self.lens, self.aspect(), &self.execution.workers);
+        self.framed.get_or_build(Framing { eye, view_up, lens, aspect }, || {
+            let world = self.world();
+            framing::frame_world(world, eye, view_up, lens, aspect, framing::FILL, workers)
+        })
     }
 
     /// The lights of a picture from `camera`: the chosen ones, else the scene's, else, without

@@ -63,6 +63,8 @@ export interface Plane {
 export interface Recording {
   steps: number;
   groups: { name: string; count: number }[];
+  /** How many of them are about the pixel that was asked about. */
+  "at-pixel"?: number | null;
   /** The recording ended at its limit: there are more steps. */
   more?: boolean;
   seconds: number;

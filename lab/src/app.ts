@@ -10,12 +10,16 @@ import { OpenDialogs } from "./open-dialogs.ts";
 import { OwnFiles } from "./own-files.ts";
 import { Playback } from "./playback.ts";
 import { missingModels, overlay } from "./states.ts";
+import { wantTally } from "./views/evaluations.ts";
 import { setLanguage, t } from "./words.ts";
 
 export type History = "replace" | "push";
 
 /** Milliseconds of rest before work that is not urgent begins. */
 const REST = 150;
+
+/** Milliseconds between two times that numbers are asked for while something is dragged. */
+const DRAGGED_REST = 250;
 
 /** Seconds of a picture above which it is drawn coarser while something is dragged: a display has 60 frames a second. */
 const COARSE_ABOVE = 0.012;
@@ -74,6 +78,8 @@ export class App {
 
   private readonly listeners: (() => void)[] = [];
   private frame = 0;
+  /** When a page's own answers were asked for last. */
+  private restTime = 0;
   private timers = new Map<string, ReturnType<typeof setTimeout>>();
   private wanted = new Map<string, string>();
 
@@ -381,7 +387,9 @@ export class App {
     // Long work waits until nothing moves.
     if (this.hasSteps) this.wantRecording();
     if (lab.compare !== "none") this.wantAgreement();
-    this.after("rest", this.isDragging ? 400 : REST, () => this.wantRest());
+    // While something is dragged, its numbers follow now and then.
+    if (!this.isDragging) this.after("rest", REST, () => this.wantRest());
+    else if (performance.now() - this.restTime > DRAGGED_REST) this.wantRest();
   }
 
   /** The picture of the whole state; while a step is shown, for its numbers alone. */
@@ -472,9 +480,10 @@ export class App {
     if (!recording) return 0;
     const { steps } = this.lab;
     if (steps === "all") return recording.steps;
+    if (steps === "pixel") return recording["at-pixel"] ?? 0;
     const group = recording.groups.find((g) => g.name === steps);
     if (group) return group.count;
-    return this.step?.key.startsWith(this.recordKey()) ? this.step.value.total : recording.steps;
+    return recording.steps;
   }
 
   /** The request for a step by its number. */
@@ -540,10 +549,12 @@ export class App {
   /** Asks for what single pages show. */
   private wantRest() {
     const { state } = this;
+    this.restTime = performance.now();
     const { page, pixel, second, layout, compare } = this.lab;
     // Sharpen what was drawn coarsely.
     if (this.lab.step === null && this.plane?.key !== this.key() && !this.isDragging) this.wantPicture();
     if (layout === "full" && page === "scene") this.answer("info", { want: "info", state });
+    if (layout === "full" && (page === "scene" || page === "shading") && !this.isDragging) wantTally(this);
     if (layout === "full" && page === "pipeline") {
       this.answer("stages", { want: "stages", state, ...(pixel ? { pixel } : {}) });
     }
@@ -617,7 +628,7 @@ export class App {
       (answer) => {
         // An older answer is shown on the way, as while something is dragged.
         const isNewest = this.wanted.get(name) === key;
-        if (!isNewest && !["picture", "pictureB", "overview"].includes(name)) return;
+        if (!isNewest && !["picture", "pictureB", "overview", "explain"].includes(name)) return;
         take(answer);
         this.silence(name);
         this.changed();

@@ -8,7 +8,8 @@ import { copy, isObject, type Json, type JsonObject } from "./json.ts";
 
 export const KINDS = ["ambient", "directional", "point", "spot", "area"] as const;
 
-const vector = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map(Number) : [0, 0, 0]);
+/** Numbers with the seven digits that the engine computes with. */
+const vector = (v: Json | undefined): number[] => (Array.isArray(v) ? v.map((n) => Number(Number(n).toPrecision(7))) : [0, 0, 0]);
 
 const kindOf = (light: JsonObject): JsonObject => (isObject(light["kind"]) ? light["kind"] : {});
 

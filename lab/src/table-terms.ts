@@ -63,7 +63,7 @@ export const TERMS = {
   on: ["activ", "activé", "ativo"],
   off: ["inactiv", "désactivé", "inativo"],
   usual: ["obișnuit", "habituel", "habitual"],
-  "of one picture; the first picture of an algorithm also builds what it keeps, such as trees": [
+  "of a picture after the first, which also builds what an algorithm keeps, such as trees": [
     "pentru o imagine; prima imagine a unui algoritm construiește și ce păstrează el, de exemplu arbori",
     "d’une image ; la première image d’un algorithme construit aussi ce qu’il garde, par exemple des arbres",
     "de uma imagem; a primeira imagem de um algoritmo constrói também o que ele guarda, como árvores",
@@ -92,7 +92,6 @@ export const TERMS = {
   "Corner {0}": ["Colțul {0}", "Sommet {0}", "Canto {0}"],
   "Corner {0} {1}": ["Colțul {0} {1}", "Sommet {0} {1}", "Canto {0} {1}"],
 
-  "different colours in the picture": ["culori diferite în imagine", "couleurs différentes dans l’image", "cores diferentes na imagem"],
 
   // Settings
   "about Model": [

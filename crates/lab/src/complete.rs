@@ -8,6 +8,11 @@ use vitral::{Camera, DMat4, DVec3, Projection, Renderer, State};
 /// Every setting with its value, the lights in force, the materials, and the camera.
 pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
     let camera = renderer.frame_camera();
+
+    // Dialogs show the lights whole, whichever of their terms the picture shows.
+    let term = renderer.light_term.take();
+    let lights = renderer.frame_lights(&camera);
+    renderer.light_term = term;
     let (view_angle, parallel_height) = match camera.projection {
         Projection::Perspective { view_angle } => (Some(view_angle.to_degrees()), None),
         Projection::Parallel { height } => (None, Some(height)),
@@ -15,7 +20,7 @@ pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
     };
     let answer = json!({
         "state": state,
-        "lights": renderer.frame_lights(&camera),
+        "lights": lights,
         "ambient": renderer.frame_ambient(),
         "materials": renderer.scene().materials,
         "camera": {

@@ -10,6 +10,9 @@ use vitral::explain::{FacetDepth, facets_over, spaces};
 use vitral::internals::render::trace::Step;
 use vitral::{DVec3, Error, Visibility};
 
+/// Facets that are listed of those that brute force compares.
+const MOST_FACETS: usize = 2000;
+
 /// Pixels along the square.
 const SIZE: u32 = 9;
 
@@ -21,9 +24,16 @@ pub(crate) fn depths(recording: &Recording, at: usize, pixel: [u32; 2]) -> Resul
     let visibility = renderer.settings.visibility;
     if visibility == Visibility::BRUTE_FORCE {
         let facets = facets_over(renderer, &camera, pixel.map(i64::from), 1)?;
-        let told =
+        let hit: BTreeMap<u32, f32> =
+            facets[0].iter().map(|found| (found.facet, found.depth)).collect();
+
+        // List those over the sample, the nearest first, then the others, which were compared too.
+        let over =
             facets[0].iter().map(|found| json!({"facet": found.facet, "depth": found.depth}));
-        return Ok(json!({"facets": told.collect::<Vec<_>>()}));
+        let others = (0..renderer.world().facet_count)
+            .filter(|facet| !hit.contains_key(facet))
+            .map(|facet| json!({"facet": facet, "depth": null}));
+        return Ok(json!({"facets": over.chain(others).take(MOST_FACETS).collect::<Vec<_>>()}));
     }
     if visibility != Visibility::Z_BUFFER {
         return Ok(Value::Null);

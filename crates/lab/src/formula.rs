@@ -6,6 +6,7 @@
 
 use serde_json::{Value, json};
 use vitral::explain::Explanation;
+use vitral::internals::math::func;
 use vitral::internals::render::shading::pixel_light::{
     CoefficientValues, Evaluation, NumberedTerms,
 };
@@ -13,13 +14,54 @@ use vitral::internals::render::shading::pixel_light::{
 /// The formula at a pixel; `null` where no light is computed.
 pub(crate) fn formula(told: &Explanation, lights: &[String]) -> Value {
     let Some(point) = told.light.points.first() else { return Value::Null };
-    let Some(evaluation) = point.evaluations.first() else { return Value::Null };
+    let Some(evaluation) = point.evaluations.first() else {
+        return without_lights(told);
+    };
     json!({
         "model": point.model,
         "mathml": symbols(point.model),
-        "numbers": numbers(evaluation, told),
+        "numbers": numbers(point.model, evaluation, told),
         "values": values(evaluation, told, lights),
     })
+}
+
+/// The formula of a surface that shows its own colour: `I = ki`.
+fn without_lights(told: &Explanation) -> Value {
+    const GREEN: usize = 1;
+    let own = three(told.light.straight);
+    let (value, byte) = (number(told.light.straight[GREEN]), told.light.bytes[GREEN]);
+    json!({
+        "model": "constant",
+        "mathml": math(&format!("<mi>I</mi><mo>=</mo>{}", identifier("k", "i"))),
+        "numbers": math(&format!(
+            "<msub><mi>I</mi><mtext>green</mtext></msub><mo>=</mo>{value}<mo>→</mo><mn>{byte}</mn>"
+        )),
+        "values": [
+            {"symbol": "ki", "value": own, "meaning": "the surface's own colour", "setting": null},
+            {
+                "symbol": "I",
+                "value": own,
+                "meaning": "the sum of all samples, before it is encoded",
+                "setting": null,
+            },
+            {
+                "symbol": "bytes",
+                "value": bytes(told),
+                "meaning": "the pixel's bytes",
+                "setting": null,
+            },
+        ],
+    })
+}
+
+/// A formula of its own line.
+fn math(content: &str) -> String {
+    format!("<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">{content}</math>")
+}
+
+/// The pixel's red, green and blue.
+fn bytes(told: &Explanation) -> String {
+    told.light.bytes[..3].iter().map(u8::to_string).collect::<Vec<_>>().join(" ")
 }
 
 fn identifier(name: &str, index: &str) -> String {
@@ -73,6 +115,14 @@ fn symbols(model: &str) -> String {
             dot("N", "L")
         ),
     };
+    if model == "ambient" {
+        // No direction counts: the lights' ambient colours alone are added.
+        return math(&format!(
+            "<mi>I</mi><mo>=</mo>{}{}<mo>+</mo><munder><mo>∑</mo><mtext>lights</mtext></munder>{ambient}",
+            i("A"),
+            k("a")
+        ));
+    }
     let lit = if specular.is_empty() { diffuse } else { format!("{diffuse}<mo>+</mo>{specular}") };
     format!(
         "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\"><mi>I</mi><mo>=</mo>{}{}<mo>+</mo>\
@@ -85,7 +135,7 @@ fn symbols(model: &str) -> String {
 }
 
 /// The formula with the green channel's numbers: each letter replaced by its value.
-fn numbers(evaluation: &Evaluation, told: &Explanation) -> String {
+fn numbers(model: &str, evaluation: &Evaluation, told: &Explanation) -> String {
     const GREEN: usize = 1;
     let mut terms = vec![number(evaluation.ambient[GREEN])];
     for of_light in &evaluation.lights {
@@ -104,6 +154,10 @@ fn numbers(evaluation: &Evaluation, told: &Explanation) -> String {
         let [i_a, i_d, i_s] = t.colors.map(|color| number(color[GREEN]));
         let times = |factors: &[String]| factors.join("<mo>·</mo>");
         let ambient = times(&[i_a, number(ka[GREEN]), number(t.ambient_intensity)]);
+        if model == "ambient" {
+            terms.push(ambient);
+            continue;
+        }
         let mut lit = times(&[i_d, number(kd[GREEN]), number(t.n_l)]);
         if let Some(highlight) = t.highlight.filter(|_| ks[GREEN] > 0.0) {
             let power =
@@ -209,12 +263,7 @@ fn values(evaluation: &Evaluation, told: &Explanation, lights: &[String]) -> Vec
         "the sum of all samples, before it is encoded",
         None,
     );
-    row(
-        "bytes".to_owned(),
-        told.light.bytes[..3].iter().map(u8::to_string).collect::<Vec<_>>().join(" "),
-        "the pixel's bytes",
-        None,
-    );
+    row("bytes".to_owned(), bytes(told), "the pixel's bytes", None);
     rows
 }
 
@@ -242,6 +291,11 @@ fn light_values(
     of("Is", specular, "specular colour of the light");
     of("L", three(t.l), "unit vector to the light, view space");
     of("N·L", digits(t.n_l), "cosine of the angle of incidence, 0 behind the surface");
+    let degrees = |cosine: f32| digits(func::acos32(cosine.clamp(-1.0, 1.0)).to_degrees());
+    of("θ", degrees(t.n_l), "angle of incidence, degrees; 90 behind the surface");
+    if let Some(distance) = t.distance {
+        of("d", digits(distance), "distance from the light");
+    }
     of("f_att", digits(t.attenuation), "what distance leaves of the light");
     of("S", three(t.visibility), "which part arrives: 1 without shadow");
 
@@ -258,6 +312,9 @@ fn light_values(
             of("H", three(h), "halfway between L and V, a unit vector, view space");
         }
         of(symbol, digits(highlight.cosine), meaning);
+        let meaning =
+            "angle between the mirrored light and the viewer, or between N and H, degrees";
+        of("Ω", degrees(highlight.cosine), meaning);
         of("lobe", digits(highlight.lobe), "that cosine to the power n, or the microfacets' lobe");
     }
 

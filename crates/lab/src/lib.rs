@@ -31,6 +31,7 @@
 //! | `bench` | seconds of several pictures |
 //! | `stages` | what each stage of the pipeline hands on |
 //! | `info` | counts, materials, lights and warnings of the scene |
+//! | `tally` | colours of the picture, evaluations of the formula of illumination |
 //! | `check` | whether an exercise is done |
 //! | `save` | the state, a command, or a drawing, as text |
 //! | `curve` | the curves of cosⁿ and attenuation |
@@ -62,6 +63,7 @@ mod save;
 mod scene;
 mod stages;
 mod steps;
+mod tally;
 #[cfg(test)]
 mod tests;
 mod why;
@@ -178,6 +180,7 @@ impl Lab {
             // Count the work of the stages, or describe the scene.
             Want::Stages { pixel } => stages::stages(stage.show(&state, files)?, pixel),
             Want::Info => stages::info(stage.show(&state, files)?),
+            Want::Tally => tally::tally(stage.show(&state, files)?),
 
             // Check an exercise, save a file, or plot a curve.
             Want::Check { exercise, pixel } => {

@@ -38,7 +38,7 @@ pub(crate) enum Curve {
 }
 
 /// The names of all requests.
-pub(crate) const WANTS: [&str; 22] = [
+pub(crate) const WANTS: [&str; 23] = [
     "catalog",
     "files",
     "complete",
@@ -58,6 +58,7 @@ pub(crate) const WANTS: [&str; 22] = [
     "bench",
     "stages",
     "info",
+    "tally",
     "check",
     "save",
     "curve",
@@ -132,6 +133,7 @@ pub(crate) enum Want {
         pixel: Option<[u32; 2]>,
     },
     Info,
+    Tally,
     Check {
         exercise: String,
         /// The pixel that is inspected.

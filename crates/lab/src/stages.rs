@@ -32,21 +32,24 @@ pub(crate) fn stages(renderer: &mut Renderer, pixel: Option<[u32; 2]>) -> Answer
     Ok((answer, Vec::new()))
 }
 
-/// `V·N` of a facet: V from its middle to the eye, N its normal, both unit (P14).
+/// `V·N` of a facet: V from the eye to its middle, N its normal, both unit. Above 0 it is a back
+/// face.
+///
+/// Source: the course, notes P, P14.
 fn facing(renderer: &Renderer, camera: &Camera, over: &Overlying) -> Value {
     let facet = over.candidate.facet;
     let [a, b, c] = renderer.world().corners_of_facet(facet);
     let normal = (b - a).cross(c - a).normalize_or_zero();
-    let to_eye = match camera.projection {
-        Projection::Parallel { .. } => camera.position - camera.focal_point,
-        _ => camera.position - (a + b + c) / 3.0,
+    let from_eye = match camera.projection {
+        Projection::Parallel { .. } => camera.focal_point - camera.position,
+        _ => (a + b + c) / 3.0 - camera.position,
     };
     json!({
         "facet": facet,
         "surface": over.surface,
         "mesh": over.mesh,
         "fate": over.candidate.fate,
-        "v-n": to_eye.normalize_or_zero().dot(normal),
+        "v-n": from_eye.normalize_or_zero().dot(normal),
     })
 }
 
@@ -83,27 +86,33 @@ fn rows(stats: &Value) -> Vec<Value> {
 
     // List the stages, each with what enters and what leaves it.
     let row = |stage: &str, goes_in: String, comes_out: String| json!({"stage": stage, "in": goes_in, "out": comes_out});
+    let triangles = |n: u64| format!("{n} triangles");
+    let kept = count(&geometry["triangles"]);
+    let [shaded, layers, covered, pixels] =
+        ["shaded-points", "layer-samples", "covered-pixels", "pixels"]
+            .map(|name| count(&picture[name]));
     vec![
         row(
-            "model transform and culling of boxes",
-            format!(
-                "{} triangles of {} objects",
-                count(&cull["triangles"]),
-                count(&cull["instances"])
-            ),
-            format!("{left} triangles"),
+            "scene graph",
+            format!("{} instances", count(&cull["instances"])),
+            triangles(count(&cull["triangles"])),
         ),
         row(
-            "view transform and projection",
+            "model transform",
+            "model space".to_owned(),
+            format!("world space, {} instances", count(&cull["instances"])),
+        ),
+        row("culling of boxes", triangles(count(&cull["triangles"])), triangles(left)),
+        row(
+            "view transform",
             format!("{} vertices", count(&geometry["vertices"])),
-            format!("{} vertices in clip space", count(&geometry["vertices"])),
+            format!("{} vertices in view space", count(&geometry["vertices"])),
         ),
         row(
             "clipping and culling of faces",
-            format!("{} triangles", count(&geometry["triangles"])),
+            triangles(kept),
             format!(
-                "{} set up, {} cut, {} outside, {} back faces, {} without area or sample",
-                count(&geometry["set-up"]),
+                "{} cut, {} outside, {} back faces, {} without area or sample",
                 count(&geometry["clipped"]),
                 gone[0],
                 gone[1],
@@ -111,16 +120,17 @@ fn rows(stats: &Value) -> Vec<Value> {
             ),
         ),
         row(
-            "visible surfaces and shading",
-            format!("{} triangles", count(&geometry["set-up"])),
-            picture.as_object().map_or(String::new(), |fields| {
-                let told =
-                    fields.iter().filter(|(_, value)| value.as_f64().is_some_and(|v| v != 0.0));
-                told.map(|(name, value)| format!("{value} {}", name.replace('-', " ")))
-                    .collect::<Vec<_>>()
-                    .join(", ")
-            }),
+            "projection",
+            "clip space".to_owned(),
+            format!("{} triangles on the screen", count(&geometry["set-up"])),
         ),
+        row(
+            "rasterisation and visible surfaces",
+            triangles(count(&geometry["set-up"])),
+            format!("{covered} covered pixels, {layers} samples of layers"),
+        ),
+        row("illumination", format!("{shaded} places"), format!("{shaded} colours")),
+        row("frame buffer", format!("{shaded} colours"), format!("{pixels} pixels")),
     ]
 }
 

@@ -507,3 +507,16 @@ fn normals_at_the_corners_and_all_lines_of_a_facet_are_told() {
         assert!((length - 1.0).abs() < 1e-5, "{text}");
     }
 }
+
+#[test]
+fn l6_evaluations_are_those_of_faces_vertices_and_pixels() {
+    let mut lab = Lab::default();
+    let state = small("builtin:cubs", json!({"lighting": false}));
+    let (told, _) = ask(&mut lab, json!({"want": "tally", "state": state}));
+    // Eight cubes of one colour each, of which seven or eight are seen.
+    let colors = told["colors"].as_u64().unwrap();
+    assert!((7..=8).contains(&colors), "{told}");
+    let of = |name: &str| told["evaluations"][name].as_u64().unwrap();
+    assert!(of("flat") < of("gouraud") && of("gouraud") < of("phong"), "{told}");
+    assert!(of("flat") >= 8 && of("flat") <= 48, "{told}");
+}

@@ -8,9 +8,10 @@
 //! The z-buffer keeps nothing that grows with the model beyond one round of triangles, which it
 //! does not charge.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use vitral_exec::Limit;
-use vitral_raster::{SamplePattern, TILE_PIXELS, TileGrid, Viewport};
+use vitral_raster::{NO_FACET, SamplePattern, TILE_PIXELS, TileGrid, Viewport};
 use vitral_render::registry::{VISIBILITY, VisibilityAlgorithm};
 use vitral_render::stats::{CullCounters, GeometryStats, VisibilityCounters};
 use vitral_render::visible::NullSink;
@@ -118,6 +119,11 @@ pub struct VisibilityDigest {
 }
 
 impl VisibilityDigest {
+    /// The facets that are seen at some sample.
+    pub fn visible_facets(&self) -> BTreeSet<u32> {
+        self.facets.iter().copied().filter(|&facet| facet != NO_FACET).collect()
+    }
+
     fn of(grid: &TileGrid, viewport: Viewport, samples: usize) -> Self {
         // Some algorithms fill tiles beyond the border of the picture, others do not.
         let pixels = || {

@@ -17,29 +17,30 @@ export function cameraDialog(app: App): TemplateResult {
   const translation = (app.get("viewpoint.eye-translation") as Vector | null) ?? position ?? [0, 0, 0];
 
   // The eye is given whole: nothing else moves it then.
-  const setEye = (field: "eye-rotation" | "eye-translation", i: number) => (v: number) => {
-    const eye = { "eye-rotation": rotation.map(round), "eye-translation": translation.map(round) };
-    eye[field][i] = v;
-    const fields = Object.fromEntries(
-      ["view", "camera-index", "position", "focal-point", "view-up", "direction"].map((k) => [`viewpoint.${k}`, null]),
-    );
+  const fixedEye = (changed: Partial<Record<"eye-rotation" | "eye-translation", number[]>>) => {
     const angle = app.get("viewpoint.view-angle") ?? camera["view-angle"] ?? null;
-    app.set({
-      ...fields,
+    return {
+      ...Object.fromEntries(["view", "camera-index", "position", "focal-point", "view-up", "direction"].map((k) => [`viewpoint.${k}`, null])),
       "viewpoint.azimuth-angle": 0,
       "viewpoint.elevation-angle": 0,
       "viewpoint.zoom-factor": 1,
       "viewpoint.view-angle": typeof angle === "number" ? round(angle) : null,
-      "viewpoint.eye-rotation": eye["eye-rotation"],
-      "viewpoint.eye-translation": eye["eye-translation"],
-    });
+      "viewpoint.eye-rotation": changed["eye-rotation"] ?? rotation.map(round),
+      "viewpoint.eye-translation": changed["eye-translation"] ?? translation.map(round),
+    };
+  };
+  const setEye = (field: "eye-rotation" | "eye-translation", i: number) => (v: number) => {
+    const to = (field === "eye-rotation" ? rotation : translation).map(round);
+    to[i] = v;
+    app.set(fixedEye({ [field]: to }));
   };
   const round = (v: number) => Number(v.toFixed(4));
   const objects = (field: "rotation" | "translation") => (app.get(`objects.${field}`) as Vector | undefined) ?? [0, 0, 0];
   const setObjects = (field: "rotation" | "translation", i: number) => (v: number) => {
     const to = [...objects(field)];
     to[i] = v;
-    app.set({ [`objects.${field}`]: to });
+    // The eye stays where it is: a framed one would follow the objects.
+    app.set({ ...fixedEye({}), [`objects.${field}`]: to });
   };
   const three = (legend: Key, prefix: "eyeU" | "eyeT" | "allU" | "allT", values: readonly number[], set: (i: number) => (v: number) => void, step: number) =>
     group(

@@ -6,6 +6,7 @@ import type { App } from "../app.ts";
 import { equal, type Json } from "../json.ts";
 import { COMPARISONS, type Comparison } from "../link.ts";
 import { button, check, combo, group } from "../parts/fields.ts";
+import { number } from "../parts/numbers.ts";
 import { table } from "../parts/table.ts";
 import { stepWords } from "../stepwords.ts";
 import { nameOf } from "../states.ts";
@@ -65,7 +66,8 @@ function valueWord(path: string, value: Json | undefined): string {
   const name = translated(field);
   if (Array.isArray(value) && field === "models") return value.map((m) => nameOf(String(m)).replace("builtin:", "")).join(" + ");
   if (typeof value === "string" && path.startsWith("settings.")) return value;
-  if (typeof value === "number" || typeof value === "string") return `${name} ${value}`;
+  if (typeof value === "number") return `${name} ${number(value)}`;
+  if (typeof value === "string") return `${name} ${value}`;
   if (typeof value === "boolean") return `${name} ${value ? t("on") : t("off")}`;
   return value === null || value === undefined ? `${name} ${t("usual")}` : name;
 }

@@ -15,12 +15,12 @@ export function facing(app: App, answer: JsonObject | undefined): unknown {
   if (!faces.length || !app.lab.pixel) return "";
   const verdict = (product: number) => {
     if (Math.abs(product) < EDGE_ON) return t("edge on");
-    return product > 0 ? t("faces the viewer") : t("faces away");
+    return product > 0 ? t("back face") : t("faces the viewer");
   };
   const rows = faces.map((face): Cell[] => {
     const product = Number(face["v-n"]);
     return [Number(face["facet"]), Number(face["surface"]), String(face["mesh"] ?? ""), Number(product.toFixed(4)), verdict(product)];
   });
   return html`${table({ name: "V·N", columns: [t("facet"), t("surface"), t("Mesh"), "V·N", t("verdict")], rows, caption: true })}
-    <p class="note">${t("V leads from the facet to the eye, N is its normal. A face with V·N < 0 is a back face: nobody sees it on a closed body.")}</p>`;
+    <p class="note">${t("V leads from the eye to the facet, N is its normal. V·N > 0: a back face, which nobody sees on a closed body; 0: edge on. The notes print “not negative” for a back face, which would count faces seen edge on.")}</p>`;
 }

@@ -13,7 +13,9 @@ import { table, type Cell } from "../parts/table.ts";
 import { stagePart, t, translated } from "../words.ts";
 import { choiceOf } from "./chosen.ts";
 import { depthCue } from "./depth-cue.ts";
+import { evaluations } from "./evaluations.ts";
 import { facing } from "./facing.ts";
+import { lightArrays } from "./light-arrays.ts";
 import { show } from "./picture.ts";
 import { profile } from "./profile.ts";
 import { explanationOf, increments, objects } from "./pixel.ts";
@@ -26,7 +28,7 @@ export function scene(app: App): TemplateResult {
   const warnings = [...new Set([...((answer?.["warnings"] as string[] | undefined) ?? []), ...(app.picture?.value.warnings ?? [])])];
   return html`<section class="region" aria-labelledby="scene-title">
     <h2 id="scene-title">${t("Scene")}</h2>
-    ${table({ name: t("Scene"), columns: [t("name"), t("value")], rows })}
+    ${table({ name: t("Scene"), columns: [t("name"), t("value")], rows })} ${lightArrays(app)}
     ${warnings.length ? html`<ul class="warnings">${warnings.map((w) => html`<li>${w}</li>`)}</ul>` : nothing}
   </section>`;
 }
@@ -74,7 +76,7 @@ function projector(answer: JsonObject | undefined): unknown {
       rows,
       caption: true,
     })}
-    <p class="note">${t("Before the transformation, four divisions show that P and Q lie on one projector. After it x′ and y′ are equal, and the larger z′ is nearer.")}</p>`;
+    <p class="note">${t("Before the transformation, four divisions show that P and Q lie on one projector; two more are needed where depths are compared along it. After it x′ and y′ are equal, and the larger z′ is nearer.")}</p>`;
 }
 
 // ---- Visible surfaces ----
@@ -85,6 +87,11 @@ export function compareAll(app: App): TemplateResult {
   const order = (app.catalog?.algorithms["visibility"] ?? []).map((a) => a.name);
   const place = (r: JsonObject) => order.indexOf(String(r["algorithm"]).split(" ")[0]!);
   const rows = answer?.key === key ? objects(answer.value.ok["rows"]).sort((a, b) => place(a) - place(b)) : [];
+  const precision = (r: JsonObject) => {
+    const found = app.catalog?.algorithms["visibility"]?.[place(r)]?.["precision"];
+    return typeof found === "string" ? translated(found) : "–";
+  };
+  const triangles = app.picture?.value.facts["triangles"];
   const ask = () => {
     app.answer("compare-all", { want: "compare-all", state: app.state }, true);
     app.say(t("Comparing all algorithms…"), "compare-all");
@@ -101,17 +108,20 @@ export function compareAll(app: App): TemplateResult {
     ${rows.length
       ? html`${table({
           name: t("All algorithms"),
-          columns: [t("algorithm"), t("milliseconds"), t("memory, kB"), t("pixels that differ"), t("counters")],
+          columns: [t("algorithm"), t("precision"), t("milliseconds"), t("memory, kB"), t("pixels that differ"), t("counters")],
           rows: rows.map((r): Cell[] => [
             String(r["algorithm"]),
+            precision(r),
             typeof r["seconds"] === "number" ? Math.round(r["seconds"] * 10000) / 10 : null,
             typeof r["memory"] === "number" && r["memory"] > 0 ? Math.max(1, Math.round(r["memory"] / 1024)) : null,
             (r["differ"] as number | undefined) ?? null,
             html`<span class="counted">${r["limit"] ? String(r["limit"]) : counters(r["counters"])}</span>`,
           ]),
         })}
+        <p class="note">${t("n = {0} triangles, p = {1} pixels", String(triangles ?? "–"), app.width * app.height)}</p>
         <ul class="notes">
-          <li><strong>${t("milliseconds")}</strong>: ${t("of one picture; the first picture of an algorithm also builds what it keeps, such as trees")}</li>
+          <li><strong>${t("precision")}</strong>: ${t("image: decided for each pixel, with its aliasing; object: for whole polygons, whatever the resolution")}</li>
+          <li><strong>${t("milliseconds")}</strong>: ${t("of a picture after the first, which also builds what an algorithm keeps, such as trees")}</li>
           <li><strong>${t("memory, kB")}</strong>: ${t("what it keeps besides the picture; –: nothing")}</li>
           <li><strong>${t("pixels that differ")}</strong>: ${t("from the first algorithm's picture; 0: all agree")}</li>
           <li><strong>${t("counters")}</strong>: ${t("what the algorithm counted; those that are 0 are left out")}</li>
@@ -280,8 +290,8 @@ const planes = new Map<string, { key: string; value: { bytes: Uint8Array; width:
 const DEFECTS: { model: string; name: Parameters<typeof t>[0]; cure: Parameters<typeof t>[0]; defect: JsonObject; cured: JsonObject }[] = [
   { model: "defect-silhouette", name: "Polygonal silhouette", cure: "finer polygons (right)", defect: {}, cured: {} },
   { model: "defect-perspective", name: "Perspective distortion", cure: "interpolation in perspective", defect: { interpolation: "linear" }, cured: { interpolation: "perspective" } },
-  { model: "defect-orientation", name: "Dependence on orientation", cure: "smaller quads (right)", defect: { shading: "gouraud" }, cured: { shading: "phong" } },
-  { model: "defect-shared-vertices", name: "Vertices not shared", cure: "vertices on both sides (right)", defect: { shading: "gouraud" }, cured: { shading: "phong" } },
+  { model: "defect-orientation", name: "Dependence on orientation", cure: "smaller quads (right), or Phong shading", defect: { shading: "gouraud" }, cured: { shading: "phong" } },
+  { model: "defect-shared-vertices", name: "Vertices not shared", cure: "vertices on both sides (right), or Phong shading", defect: { shading: "gouraud" }, cured: { shading: "phong" } },
   { model: "defect-normals", name: "Unrepresentative normals", cure: "the faces' own normals", defect: { shading: "gouraud" }, cured: { shading: "flat" } },
 ];
 
@@ -325,6 +335,7 @@ function cornerNormals(app: App): unknown {
   const rows: Cell[][] = [
     ...faces.map((f): Cell[] => [t("facet {0}", Number(f["facet"])), ...coordinates(f["normal"])]),
     [t("mean of the faces"), ...coordinates(corner["mean"])],
+    [t("mean of the triangles, each once"), ...coordinates(corner["mean-of-triangles"])],
     [t("result"), ...coordinates(corner["result"])],
   ];
   const choose = (value: string) => {
@@ -360,7 +371,7 @@ export function shading(app: App): TemplateResult {
       <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
       <div class="thumbnails three">${["flat", "gouraud", "phong"].map(one)}</div>
     </section>
-    ${profile(app)} ${normals(app)}
+    ${evaluations(app)} ${profile(app)} ${normals(app)}
     <section class="region" aria-labelledby="defects-title">
       <h2 id="defects-title">${t("Defects of interpolated shading")}</h2>
       <div class="list">${DEFECTS.map((d) => radio(t(d.name), "defect", d === shown, () => open(d)))}</div>

@@ -107,6 +107,8 @@ function legend(text: string): TemplateResult {
     [/class="box kept/, "s-kept", t("box in view")],
     [/class="box culled/, "s-culled", t("box culled")],
     [/class="light"/, "s-light", t("light")],
+    [/class="cone/, "s-cone", t("cone of a spot light")],
+    [/class="lamp/, "s-lamp", t("area light")],
     [/class="ray/, "s-ray", t("ray of the pixel")],
     [/class="light-ray/, "s-light-ray", t("ray to a light")],
     [/class="part/, "s-part", t("box that the ray opened")],

@@ -300,15 +300,24 @@ function zBuffer(app: App, step: Step): unknown {
   const choice = choiceOf(app, f["facet"]);
   return html`${depthsDrawing(app, step)}
   ${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing}
-  ${depths ? html`${depthTable(depths)}${depthNote()}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+  ${depths ? html`${depthTable(depths)}${depthNote()} ${slopeNote(depths)}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+}
+
+/** How depth changes in the plane of the step's facet (P17). */
+function slopeNote(depths: JsonObject): unknown {
+  const [along, down] = numbers(depths["slope"]);
+  if (along === undefined || down === undefined) return nothing;
+  const signed = (v: number) => `${v < 0 ? "−" : "+"} ${valueText(Math.abs(Number(v.toPrecision(4))))}`;
+  return html`<p class="note">${t("In the facet's plane A x + B y + C z + D = 0:")} z(x + 1, y) = z − A/C = z ${signed(along)}, z(x, y + 1) = z − B/C = z ${signed(down)}</p>`;
 }
 
 /** Brute force: what the pixel's sample is compared with. */
 function bruteForce(app: App, step: Step): unknown {
   const facets = objects(step.depths?.["facets"]);
   if (!step.depths) return html`${bruteForceDrawing(app, step)}<p class="note">${t("Inspect a pixel to see the depths of all facets over it.")}</p>`;
-  const nearest = Math.max(...facets.map((f) => Number(f["depth"])));
-  const rows = facets.map((f) => [f["facet"] as number, valueText(f["depth"]), Number(f["depth"]) === nearest ? t("nearest") : t("hidden")]);
+  const nearest = Math.max(...facets.map((f) => Number(f["depth"] ?? -1)));
+  const verdict = (depth: Json | undefined) => (typeof depth !== "number" ? t("not over the pixel") : depth === nearest ? t("nearest") : t("hidden"));
+  const rows = facets.map((f) => [f["facet"] as number, valueText(f["depth"]), verdict(f["depth"])]);
   const columns = [t("facet"), t("Depth"), t("verdict")];
   return html`${bruteForceDrawing(app, step)}
   ${table({ name: t("Depths"), columns, rows, ...rowsOf(app, facets.map((f) => f["facet"])), caption: true }, () => app.changed())}${depthNote()}`;

@@ -98,8 +98,13 @@ impl<'w> Replay<'w> {
         picture
     }
 
-    /// The picture after the steps that were taken: what is decided so far.
+    /// The picture after the steps that were taken: what is decided so far; after the last of all,
+    /// the finished one.
     pub fn decided(&self) -> Plane<[u8; 4]> {
+        let watched = self.watched;
+        if self.taken == watched.steps.len() && !watched.more && self.taken > 0 {
+            return watched.image.clone();
+        }
         let pixel = |(i, shown): (usize, &Shown)| match *shown {
             Shown::Paper => opaque(PAPER),
             Shown::Background => self.watched.background[i / self.canvas.width as usize],

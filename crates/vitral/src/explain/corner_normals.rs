@@ -26,6 +26,9 @@ pub struct CornerNormal {
     pub faces: Vec<NormalOfFace>,
     /// The mean of all their normals, weighted by their angles; zero where they cancel each other.
     pub mean: [f32; 3],
+    /// The unweighted mean of the normals of all triangles there: it leans towards faces that are
+    /// cut through the corner.
+    pub mean_of_triangles: [f32; 3],
     /// The normal that shading uses there.
     pub result: [f32; 3],
 }
@@ -61,6 +64,7 @@ pub fn corner_normals(renderer: &Renderer, facet: u32) -> Result<[CornerNormal; 
         let vertex = mesh.triangles[triangle][corner];
         let position = mesh.positions[vertex as usize];
         let (mut faces, mut sum) = (Vec::new(), DVec3::ZERO);
+        let mut sum_of_triangles = DVec3::ZERO;
         for face in 0..mesh.face_count() {
             // Look for the corner in the face's outline.
             let outline = mesh.face_corners(face);
@@ -71,7 +75,13 @@ pub fn corner_normals(renderer: &Renderer, facet: u32) -> Result<[CornerNormal; 
 
             // Add the face's normal with its angle as weight.
             let (normal, angle) = (face_normal(mesh, face), angle_at(mesh, outline, at));
-            sum += DVec3::from(normal.map(f64::from)) * angle;
+            let unit = DVec3::from(normal.map(f64::from));
+            sum += unit * angle;
+            let meets = |triangle: &[u32; 3]| {
+                triangle.iter().any(|&v| mesh.positions[v as usize] == position)
+            };
+            let triangles = &mesh.triangles[mesh.face_triangles(face)];
+            sum_of_triangles += unit * triangles.iter().filter(|t| meets(t)).count() as f64;
             if faces.len() < MOST_FACES {
                 faces.push(NormalOfFace {
                     surface: instance.first_surface + face as u32,
@@ -87,7 +97,8 @@ pub fn corner_normals(renderer: &Renderer, facet: u32) -> Result<[CornerNormal; 
             let normal = DVec3::from(normals[corner].map(f64::from));
             normal.normalize_or_zero().as_vec3().to_array()
         });
-        CornerNormal { corner, vertex, faces, mean, result }
+        let mean_of_triangles = sum_of_triangles.normalize_or_zero().as_vec3().to_array();
+        CornerNormal { corner, vertex, faces, mean, mean_of_triangles, result }
     }))
 }
 
@@ -108,6 +119,7 @@ mod tests {
     #[test]
     fn l8_three_squares_of_a_cube_meet_in_their_mean() {
         let renderer = Renderer::new(load_builtin("cubs").unwrap()).unwrap();
+        let mut skewed = false;
         for facet in [0, 1, 11] {
             for corner in corner_normals(&renderer, facet).unwrap() {
                 assert_eq!(corner.faces.len(), 3, "{corner:?}");
@@ -115,8 +127,12 @@ mod tests {
                 let third = 1.0 / 3.0f32.sqrt();
                 assert!(corner.mean.iter().all(|c| (c.abs() - third).abs() < 1e-6), "{corner:?}");
                 assert!(corner.faces.iter().any(|face| face.normal == corner.result));
+                // A square that is cut through the corner counts twice.
+                let cut = corner.mean_of_triangles.iter().any(|c| (c.abs() - third).abs() > 0.01);
+                skewed |= cut;
             }
         }
+        assert!(skewed);
         assert!(corner_normals(&renderer, u32::MAX).is_err());
     }
 }

@@ -3,7 +3,7 @@
 use crate::answer::Answer;
 use serde_json::{Value, json};
 use vitral::internals::scene::lab::LabView;
-use vitral::{Camera, DMat4, DVec3, Projection, Renderer, State};
+use vitral::{Camera, DMat4, DVec3, Error, Projection, Renderer, State};
 
 /// Every setting with its value, the lights in force, the materials, and the camera.
 pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
@@ -18,8 +18,16 @@ pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
         Projection::Parallel { height } => (None, Some(height)),
         Projection::Window { .. } => (None, None),
     };
+    let refusal = renderer.check_settings().err().map(|error| {
+        let hint = match &error {
+            Error::Usage { hint, .. } | Error::Unsupported { hint, .. } => hint.as_str(),
+            _ => "",
+        };
+        json!({"message": error.to_string(), "hint": hint})
+    });
     let answer = json!({
         "state": state,
+        "refusal": refusal,
         "lights": lights,
         "ambient": renderer.frame_ambient(),
         "materials": renderer.scene().materials,

@@ -9,7 +9,7 @@ use vitral::{DrawingFormat, DrawingOptions, DrawingSettings, Renderer, State};
 /// The state file, a command that makes the same picture, or a line drawing as SVG.
 pub(crate) fn save(renderer: &mut Renderer, state: &State, what: Saved) -> Answer {
     let text = match what {
-        Saved::State => state.to_json(),
+        Saved::State => with_plain_names(state).to_json(),
         Saved::Command => command(state),
         Saved::Drawing => {
             let drawing = renderer.draw(&DrawingSettings::default())?.drawing;
@@ -22,23 +22,26 @@ pub(crate) fn save(renderer: &mut Renderer, state: &State, what: Saved) -> Answe
     Ok((json!({"text": text}), Vec::new()))
 }
 
+/// The state with models of the user's own called by their files, as the command line reads them.
+fn with_plain_names(state: &State) -> State {
+    let mut state = state.clone();
+    for model in &mut state.models {
+        if model.starts_with("file:") {
+            *model = plain_name(model).to_owned();
+        }
+    }
+    state
+}
+
 /// A shell command with the state, only what differs from the default, as a document in place.
 fn command(state: &State) -> String {
+    let state = &with_plain_names(state);
     let all = serde_json::to_value(state).unwrap_or_default();
     let defaults = serde_json::to_value(State::default()).unwrap_or_default();
     let mut differing = difference(&all, &defaults).unwrap_or_else(|| json!({}));
     differing["vitral"] = all["vitral"].clone();
     let name = state.models.first().map_or("picture", |model| plain_name(model));
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem).replace('\'', "'\\''");
-
-    // Call models of the user's own by their files.
-    if let Some(models) = differing["models"].as_array_mut() {
-        for model in models {
-            if let Some(file) = model.as_str().filter(|model| model.starts_with("file:")) {
-                *model = json!(plain_name(file));
-            }
-        }
-    }
     format!("vitral render --load-state - -o '{stem}.png' <<'STATE'\n{differing:#}\nSTATE\n")
 }
 

@@ -64,13 +64,8 @@ impl Recording {
         // Let a renderer that knows nothing tell all that there is to do.
         let mut renderer = stage.renderer(state, files)?;
         let camera = renderer.frame_camera();
-        let mut watched = renderer.watch_first_steps(&camera, MOST_BYTES)?;
+        let watched = renderer.watch_picture(&camera, MOST_BYTES)?;
         let seconds = renderer.execution().budget.elapsed();
-
-        // Take the colours of what is decided from the finished picture, with all its samples.
-        if let Some(color) = renderer.render_from(&camera)?.frame.color.take() {
-            watched.image = color;
-        }
 
         // Give each kind of step a number, in the order of their first steps.
         let (mut found, mut groups): (Vec<Discriminant<Step>>, Vec<String>) = Default::default();

@@ -36,7 +36,7 @@ pub use coherence::{Coherence, CoherenceSet};
 pub use execution::Execution;
 pub use pipeline::{
     ExaminedPixel, Rendered, Shot, examine_pixel, illuminate_corners, outlined_polygons, render,
-    watch_steps,
+    watch_picture, watch_steps,
 };
 pub use prepare::PreparedView;
 pub use session::Session;

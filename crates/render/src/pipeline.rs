@@ -26,7 +26,7 @@ use checks::{check_indices, check_order, check_size, warnings};
 pub use pixel::{ExaminedPixel, examine_pixel};
 pub use polygons::outlined_polygons;
 use std::sync::Arc;
-pub use steps::watch_steps;
+pub use steps::{watch_picture, watch_steps};
 use stop_watch::StopWatch;
 use vitral_exec::Limit;
 use vitral_frame::{Frame, Plane};

@@ -130,6 +130,9 @@ impl Passed {
     /// In words: how many, and the first few.
     fn describe(&self) -> String {
         const MAX_NAMED: usize = 16;
+        if self.is_empty() {
+            return String::new();
+        }
         let mut names = self.names();
         names.truncate(MAX_NAMED);
         let what = match self {

@@ -15,7 +15,7 @@ use vitral_render::stats::CullCounters;
 use vitral_render::trace::replay::WatchedSteps;
 use vitral_render::{
     ColorSpace, Environment, Execution, Global, GroundShadow, PreparedView, Session, Settings,
-    Shot, Surroundings, radiosity, render, watch_steps,
+    Shot, Surroundings, radiosity, render, watch_picture, watch_steps,
 };
 use vitral_scene::{
     Axis, Camera, Lens, LightMeter, Projection, Scene, View, ViewTransform, World, default_lights,
@@ -477,6 +477,15 @@ impl Renderer {
         self.render_from(&camera)
     }
 
+    /// Says whether the settings go together, without rendering.
+    ///
+    /// # Errors
+    /// Settings that cannot be carried out.
+    pub fn check_settings(&self) -> Result<(), Error> {
+        self.picture_settings().check().map_err(vitral_render::Error::from)?;
+        Ok(())
+    }
+
     /// Renders the picture that `camera` sees.
     ///
     /// # Errors
@@ -546,23 +555,25 @@ impl Renderer {
     pub fn watch_steps(&mut self, camera: &Camera) -> Result<WatchedSteps, Error> {
         let lights = self.frame_lights(camera);
         let shot = self.shot(camera, &lights);
-        Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution, None)?)
+        Ok(watch_steps(&mut self.session, &shot, &self.settings, &self.execution)?)
     }
 
-    /// [`Self::watch_steps`] that keeps the first steps, those that take no more than `most_bytes`
-    /// of memory, and says whether more followed.
+    /// Renders the picture that `camera` sees, and keeps the first steps of its algorithms with all
+    /// samples of each pixel, as the command line's `--trace` writes them: those that take no more
+    /// than `most_bytes` of memory.
     ///
     /// # Errors
     /// As [`render`](Self::render).
-    pub fn watch_first_steps(
+    pub fn watch_picture(
         &mut self,
         camera: &Camera,
         most_bytes: u64,
     ) -> Result<WatchedSteps, Error> {
         let lights = self.frame_lights(camera);
         let shot = self.shot(camera, &lights);
-        let (session, execution) = (&mut self.session, &self.execution);
-        Ok(watch_steps(session, &shot, &self.settings, execution, Some(most_bytes))?)
+        let mut settings = self.picture_settings();
+        settings.picture.channels.color = true;
+        Ok(watch_picture(&mut self.session, &shot, &settings, &self.execution, most_bytes)?)
     }
 
     /// The facets of the view from `camera`, culled and ready for the screen, with one sample a

@@ -4,7 +4,7 @@
 use super::{FrameContext, Shot, render};
 use crate::display::BackgroundRows;
 use crate::stats::CullCounters;
-use crate::trace::numbered::Collector;
+use crate::trace::numbered::{Collector, NumberedStep};
 use crate::trace::replay::WatchedSteps;
 use crate::trace::{Observer, Step, picture::Recorder};
 use crate::visible::{NullSink, TileSink};
@@ -54,55 +54,90 @@ impl FrameContext<'_> {
     }
 }
 
-/// Renders a picture, and keeps the steps of the visibility algorithm with one sample a pixel: all,
-/// or with `most_bytes` the first that take no more memory.
+/// Renders a picture, and keeps the steps of the visibility algorithm with one sample a pixel.
 ///
 /// # Errors
-/// As [`render`]; without `most_bytes` [`Limit::Memory`](vitral_exec::Limit::Memory) if the steps
-/// are too many for the budget.
+/// As [`render`]; [`Limit::Memory`](vitral_exec::Limit::Memory) if the steps are too many.
 pub fn watch_steps(
     session: &mut Session,
     shot: &Shot<'_>,
     settings: &Settings,
     execution: &Execution,
-    most_bytes: Option<u64>,
 ) -> Result<WatchedSteps, Error> {
     let settings = &settings.clone().with_channels(Channels::default());
     let unwatched = Execution { observer: None, ..execution.clone() };
-    let rendered = render(session, shot, settings, &unwatched)?;
-    let image = rendered.frame.color.expect("the colour channel was asked for");
+    let image = color_of(render(session, shot, settings, &unwatched)?.frame);
 
     // Look on while it finds the surfaces.
     let viewport = settings.check()?;
     let context = FrameContext { shot, settings, viewport, execution: &unwatched };
-    let budget = match most_bytes {
-        Some(_) => Budget::default().with_memory_limit(most_bytes),
-        None => execution.budget.clone(),
-    };
-    let collector = Arc::new(Collector::new(budget, None));
+    let collector = Arc::new(Collector::new(execution.budget.clone(), None));
     let seen = SeenFacets::new(viewport);
     context.resolve_watched(session, Arc::clone(&collector) as Arc<dyn Observer>, &seen)?;
-    let (steps, more) = match most_bytes {
-        Some(_) => collector.take_first(),
-        None => (collector.take()?, false),
-    };
+    Ok(context.watched(session, (collector.take()?, false), image, seen))
+}
 
-    // Name surfaces instead of facets: a polygon is of several.
-    let surface = |facet: u32| session.world().surface_of_facet(facet);
-    let drawn = |step: &Step| match step {
-        Step::Drawn { facet, .. } | Step::Piece { facet, .. } => Some(surface(*facet)),
-        _ => None,
-    };
-    let drawn = steps.iter().map(|numbered| drawn(&numbered.step)).collect();
-    let seen = seen
-        .facets()
-        .into_iter()
-        .map(|facet| (facet != NO_FACET).then(|| surface(facet)))
-        .collect();
-    let picture = &settings.picture;
-    let background = (picture.background, viewport.height, picture.color_space == ColorSpace::Raw);
-    let background = BackgroundRows::new(&background).bytes;
-    Ok(WatchedSteps { steps, more, image, background, seen, drawn })
+/// Renders a picture, and keeps the first steps of all its algorithms with all samples of each
+/// pixel, those that take no more than `most_bytes` of memory.
+///
+/// # Errors
+/// As [`render`].
+pub fn watch_picture(
+    session: &mut Session,
+    shot: &Shot<'_>,
+    settings: &Settings,
+    execution: &Execution,
+    most_bytes: u64,
+) -> Result<WatchedSteps, Error> {
+    // Look on while the picture is rendered.
+    let steps_budget = Budget::default().with_memory_limit(Some(most_bytes));
+    let collector = Arc::new(Collector::new(steps_budget, None));
+    let observer = Some(Arc::clone(&collector) as Arc<dyn Observer>);
+    let observed = Execution { observer, ..execution.clone() };
+    let image = color_of(render(session, shot, settings, &observed)?.frame);
+
+    // Find what is seen at the centre of each pixel.
+    let unwatched = Execution { observer: None, ..execution.clone() };
+    let viewport = settings.check()?;
+    let context = FrameContext { shot, settings, viewport, execution: &unwatched };
+    let seen = SeenFacets::new(viewport);
+    let mut grid = TileGrid::new(viewport, 1);
+    let view = context.view(session, SamplePattern::new(1), &mut CullCounters::default());
+    context.visibility().resolve(&view, None, &mut grid, &unwatched, &seen)?;
+    drop(view);
+    Ok(context.watched(session, collector.take_first(), image, seen))
+}
+
+fn color_of(frame: Frame) -> Plane<[u8; 4]> {
+    frame.color.expect("the colour channel was asked for")
+}
+
+impl FrameContext<'_> {
+    /// Puts together what a replay needs. `more` says whether the steps go on.
+    fn watched(
+        &self,
+        session: &Session,
+        (steps, more): (Vec<NumberedStep>, bool),
+        image: Plane<[u8; 4]>,
+        seen: SeenFacets,
+    ) -> WatchedSteps {
+        // Name surfaces instead of facets: a polygon is of several.
+        let surface = |facet: u32| session.world().surface_of_facet(facet);
+        let drawn = |step: &Step| match step {
+            Step::Drawn { facet, .. } | Step::Piece { facet, .. } => Some(surface(*facet)),
+            _ => None,
+        };
+        let drawn = steps.iter().map(|numbered| drawn(&numbered.step)).collect();
+        let seen = seen
+            .facets()
+            .into_iter()
+            .map(|facet| (facet != NO_FACET).then(|| surface(facet)))
+            .collect();
+        let picture = &self.settings.picture;
+        let is_raw = picture.color_space == ColorSpace::Raw;
+        let background = BackgroundRows::new(&(picture.background, self.viewport.height, is_raw));
+        WatchedSteps { steps, more, image, background: background.bytes, seen, drawn }
+    }
 }
 
 /// Keeps the opaque facet that is seen at each pixel.

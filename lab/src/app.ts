@@ -96,15 +96,16 @@ export class App {
   /** Renders before the next frame. */
   changed() {
     if (this.frame) return;
-    const render = () => {
-      if (!this.frame) return;
-      cancelAnimationFrame(this.frame);
-      this.frame = 0;
-      for (const listener of this.listeners) listener();
-    };
-    this.frame = requestAnimationFrame(render);
+    this.frame = requestAnimationFrame(() => this.render());
     // A hidden page has no frames.
-    if (document.hidden) setTimeout(render, 50);
+    if (document.hidden) setTimeout(() => this.frame && this.render(), 50);
+  }
+
+  /** Renders at once, where the focus goes to what appears. */
+  render() {
+    cancelAnimationFrame(this.frame);
+    this.frame = 0;
+    for (const listener of this.listeners) listener();
   }
 
   fail(message: string) {

@@ -120,44 +120,60 @@ const bar = () => document.querySelector<HTMLElement>('[role="menubar"]');
 const menuButton = (i: number) => bar()?.querySelectorAll<HTMLElement>(":scope > div > button")[i] ?? null;
 const entryButtons = (i: number) => [...(menuButton(i)?.parentElement?.querySelectorAll<HTMLElement>('[role^="menuitem"]:not([aria-haspopup])') ?? [])];
 
+/** Whether the focus moves between menus: an entry that is taken away loses it to nothing. */
+let isMoving = false;
+
 function focusEntry(menu: number, entry: number) {
-  setTimeout(() => {
-    const all = entryButtons(menu);
-    all[(entry + all.length) % all.length]?.focus();
-  }, 30);
+  const all = entryButtons(menu);
+  all[(entry + all.length) % all.length]?.focus();
 }
 
 function setOpen(app: App, menu: number | null, entry = 0) {
   const wasOpen = open;
   open = menu;
   if (menu !== null) stop = menu;
-  app.changed();
+  isMoving = true;
+  app.render();
   if (menu !== null) focusEntry(menu, entry);
   else if (wasOpen !== null) menuButton(wasOpen)?.focus();
+  isMoving = false;
+}
+
+/** Closes the menu that is open, if there is one; its button gets the focus. */
+export function closeMenu(app: App): boolean {
+  if (open === null) return false;
+  setOpen(app, null);
+  return true;
 }
 
 /** Closes the menu where the focus goes elsewhere. */
 function focusOut(app: App, e: FocusEvent) {
   const to = e.relatedTarget as Element | null;
-  if (open === null || (to && (e.currentTarget as Element).contains(to))) return;
+  if (open === null || isMoving || (to && (e.currentTarget as Element).contains(to))) return;
   open = null;
   app.changed();
+}
+
+/** Goes to a button of the bar. */
+function focusButton(app: App, menu: number) {
+  stop = menu;
+  app.render();
+  menuButton(menu)?.focus();
 }
 
 function barKeys(app: App, e: KeyboardEvent, menu: number, count: number) {
   const to = (i: number) => (i + count) % count;
   switch (e.key) {
     case "ArrowRight":
-    case "ArrowLeft":
-      stop = to(menu + (e.key === "ArrowRight" ? 1 : -1));
-      app.changed();
-      menuButton(stop)?.focus();
+    case "ArrowLeft": {
+      const next = to(menu + (e.key === "ArrowRight" ? 1 : -1));
+      if (open !== null) setOpen(app, next);
+      else focusButton(app, next);
       break;
+    }
     case "Home":
     case "End":
-      stop = e.key === "Home" ? 0 : count - 1;
-      app.changed();
-      menuButton(stop)?.focus();
+      focusButton(app, e.key === "Home" ? 0 : count - 1);
       break;
     case "ArrowDown":
     case "Enter":
@@ -192,9 +208,6 @@ function entryKeys(app: App, e: KeyboardEvent, menu: number, count: number) {
     case "ArrowRight":
     case "ArrowLeft":
       setOpen(app, (menu + (e.key === "ArrowRight" ? 1 : -1) + count) % count);
-      break;
-    case "Escape":
-      setOpen(app, null);
       break;
     case "Tab":
       open = null;

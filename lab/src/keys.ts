@@ -1,8 +1,9 @@
 // Single keys. They act while the picture, the steps or the structure has the focus.
 
 import type { App } from "./app.ts";
-import { isExplaining } from "./parts/what.ts";
+import { hideExplanation, isExplaining } from "./parts/what.ts";
 import { setComparison } from "./views/compare.ts";
+import { closeMenu } from "./views/menus.ts";
 import { resetView } from "./views/camera.ts";
 
 const PLACES = '[role="application"], .steps, .structure';
@@ -16,8 +17,9 @@ const uses = (element: Element, key: string) =>
 export function listenToKeys(app: App) {
   addEventListener("keydown", (e) => {
     const element = e.target instanceof Element ? e.target : document.body;
-    if (e.defaultPrevented || e.ctrlKey || e.metaKey || e.altKey || !element.closest(PLACES)) return;
-    if (e.key === "Escape") return escape(app);
+    if (e.defaultPrevented || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (e.key === "Escape") return escape(app, e, element);
+    if (!element.closest(PLACES)) return;
     if (!app.hasKeys || uses(element, e.key)) return;
     const act = actions(app)[e.key];
     if (!act) return;
@@ -26,10 +28,18 @@ export function listenToKeys(app: App) {
   });
 }
 
-/** Leaves the steps, unless something is open or chosen that Escape takes away first. */
-function escape(app: App) {
-  if (app.lab.step === null || app.chosen || app.dialogs.all.length > 0 || isExplaining()) return;
-  app.showFinished();
+/**
+ * Closes what is open: a menu, an explanation, the topmost dialog. Then, in picture, steps and structure,
+ * leaves the steps, unless a facet is chosen, which is taken away first.
+ */
+function escape(app: App, e: KeyboardEvent, element: Element) {
+  const dialog = app.dialogs.all.at(-1);
+  if (closeMenu(app)) e.preventDefault();
+  else if (isExplaining()) hideExplanation();
+  else if (dialog) {
+    e.preventDefault();
+    app.dialogs.close(dialog);
+  } else if (app.lab.step !== null && !app.chosen && element.closest(PLACES)) app.showFinished();
 }
 
 /** Turns the comparison on or off; the focus stays in a picture. */

@@ -19,22 +19,20 @@ export class OpenDialogs {
   open(name: DialogName, opener: Element | null = document.activeElement) {
     this.openers.set(name, opener);
     this.all = [...this.all.filter((d) => d !== name), name];
-    this.app.changed();
-    setTimeout(() => {
-      // A sheet at the bottom leaves the picture above it in view.
-      if (isPhone()) document.querySelector(".pictures .stage")?.scrollIntoView({ block: "start", behavior: "instant" });
-      const dialog = document.querySelector(`dialog[data-name="${name}"]`);
-      dialog?.querySelector<HTMLElement>("select, input, button")?.focus({ preventScroll: true });
-    }, 60);
+    this.app.render();
+    // A sheet at the bottom leaves the picture above it in view.
+    if (isPhone()) document.querySelector(".pictures .stage")?.scrollIntoView({ block: "start", behavior: "instant" });
+    const dialog = document.querySelector(`dialog[data-name="${name}"]`);
+    dialog?.querySelector<HTMLElement>("select, input, button")?.focus({ preventScroll: true });
   }
 
   close(name: DialogName) {
     this.all = this.all.filter((d) => d !== name);
     this.places.delete(name);
-    this.app.changed();
+    this.app.render();
     const opener = this.openers.get(name);
     const isThere = opener instanceof HTMLElement && opener.isConnected && opener.offsetParent !== null;
     const back = isThere ? opener : document.querySelector<HTMLElement>('[role="application"]');
-    setTimeout(() => back?.focus(), 30);
+    back?.focus();
   }
 }

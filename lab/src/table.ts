@@ -808,7 +808,10 @@ const PAGE = {
   "plane that divides space": ["plan care împarte spațiul", "plan qui divise l’espace", "plano que divide o espaço"],
   chosen: ["ales", "choisi", "escolhido"],
   "first {0} steps of more": ["primii {0} pași din mai mulți", "{0} premières étapes, il y en a d’autres", "primeiros {0} passos de mais"],
-  // Counts of the scene and of shading
+  // Counts of culling, of the scene and of shading
+  "Box tests against the view volume.": ["Teste de cutii față de volumul vizual.", "Tests de boîtes contre le volume de vision.", "Testes de caixas contra o volume de visão."],
+  "Objects that no box test let through.": ["Obiecte pe care niciun test nu le-a lăsat să treacă.", "Objets qu’aucun test n’a laissé passer.", "Objetos que nenhum teste deixou passar."],
+  "Triangles thrown away with the box round them.": ["Triunghiuri eliminate împreună cu cutia lor.", "Triangles éliminés avec leur boîte.", "Triângulos descartados com a sua caixa."],
   "Lights of the scene": ["Luminile scenei", "Lumières de la scène", "Luzes da cena"],
   "position x y z w": ["poziția x y z w", "position x y z w", "posição x y z w"],
   "Evaluations of the formula": ["Evaluări ale formulei", "Évaluations de la formule", "Avaliações da fórmula"],

@@ -53,16 +53,10 @@ function moveAside(app: App, name: DialogName, e: Event) {
 
 export function dialog(app: App, name: DialogName, title: string, content: unknown): TemplateResult {
   const close = () => app.dialogs.close(name);
-  const keys = (e: KeyboardEvent) => {
-    if (e.key !== "Escape") return;
-    e.preventDefault();
-    e.stopPropagation();
-    close();
-  };
   const place = isPhone() ? undefined : app.dialogs.places.get(name);
   const number = app.dialogs.all.indexOf(name);
   const style = { "--n": String(number), ...(place ? { left: `${place.left}px`, right: "auto", top: `${place.top}px` } : {}) };
-  return html`<dialog data-name=${name} aria-labelledby=${`dialog-${name}`} .style=${css(style)} @keydown=${keys} ${ref(opened)}>
+  return html`<dialog data-name=${name} aria-labelledby=${`dialog-${name}`} .style=${css(style)} ${ref(opened)}>
     <header @pointerdown=${(e: PointerEvent) => drag(app, name, e)}>
       <h2 id=${`dialog-${name}`}>${title}</h2>
       <div class="buttons">

@@ -39,6 +39,8 @@ export const CHANNELS = [
   ["blue", "Blue"],
 ] as const;
 
+const lightsLeft = (app: App) => (app.get("lights") as Json[]).length;
+
 export function lightsDialog(app: App): TemplateResult {
   return dialog(app, "lights", t("Lights"), content(app));
 }
@@ -56,8 +58,14 @@ function content(app: App): unknown {
     app.draftPlace = null;
     app.changed();
   }, { term: "Light Number" });
+  // The button goes with the last light: the focus goes to the one beside it.
+  const remove = (e: Event) => {
+    const add = (e.currentTarget as Element).previousElementSibling as HTMLElement;
+    removeLight(app, number);
+    if (lightsLeft(app) === 0) add.focus();
+  };
   const buttons = html`<div class="buttons">
-    ${button(t("Add light"), () => addLight(app))} ${light ? button(t("Remove light"), () => removeLight(app, number)) : nothing}
+    ${button(t("Add light"), () => addLight(app))} ${light ? button(t("Remove light"), remove) : nothing}
     ${button(t("Reset"), () => resetLights(app))}
   </div>`;
   const kind = light && isObject(light["kind"]) ? String(light["kind"]["type"]) : "";

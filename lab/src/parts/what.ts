@@ -19,6 +19,12 @@ export function isExplaining(): boolean {
   return box !== null && isShown(box);
 }
 
+/** Closes the explanation that is open, where the browser does not do so itself. */
+export function hideExplanation() {
+  const box = document.getElementById(ID);
+  if (box && !HAS_POPOVERS) box.hidden = true;
+}
+
 /** The explanation of a term in words. */
 export const explanationText = (term: Term): string => (typeof term === "string" ? t(`about ${term}` as Key) : translated(term.text));
 
@@ -68,9 +74,6 @@ export const explanationBox = (): TemplateResult => {
   const hide = (e: Event) => {
     if (!HAS_POPOVERS) (e.currentTarget as HTMLElement).hidden = true;
   };
-  const keys = (e: KeyboardEvent) => {
-    if (e.key === "Escape") hide(e);
-  };
   return html`<div
     id=${ID}
     class="explanation"
@@ -81,7 +84,6 @@ export const explanationBox = (): TemplateResult => {
     aria-labelledby=${`${ID}-title`}
     @toggle=${read}
     @focusout=${hide}
-    @keydown=${keys}
   >
     <strong id=${`${ID}-title`}></strong>
     <p></p>

@@ -5,6 +5,7 @@ import { html, nothing, svg } from "lit-html";
 import type { App } from "../app.ts";
 import type { Json, JsonObject } from "../json.ts";
 import type { Choice } from "../parts/choice.ts";
+import { isExplaining } from "../parts/what.ts";
 import { t } from "../words.ts";
 import { explanationOf, objects } from "./pixel.ts";
 
@@ -113,7 +114,7 @@ export function followPixel(app: App) {
 export function listenToEscape(app: App) {
   addEventListener("keydown", (e) => {
     const element = e.target instanceof Element ? e.target : document.body;
-    if (e.key !== "Escape" || e.defaultPrevented || !app.chosen || element.closest('dialog, [role="menubar"]')) return;
+    if (e.key !== "Escape" || e.defaultPrevented || !app.chosen || isExplaining() || element.closest('dialog, [role="menubar"]')) return;
     chooseFacet(app, null);
   });
 }

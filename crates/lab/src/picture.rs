@@ -64,9 +64,17 @@ fn description(renderer: &Renderer, state: &State, lights: usize) -> String {
     )
 }
 
+/// Counters of culling by boxes.
+const CULL_MEANINGS: &[(&str, &str)] = &[
+    ("box_tests", "Box tests against the view volume."),
+    ("instances_culled", "Objects that no box test let through."),
+    ("triangles_culled", "Triangles thrown away with the box round them."),
+];
+
 /// Counters that are not zero, with what they mean.
 fn counters(stats: &Value) -> Vec<Value> {
     let groups = [
+        ("cull", CULL_MEANINGS),
         ("geometry", GeometryStats::MEANINGS),
         ("visibility", VisibilityCounters::MEANINGS),
         ("tracing", TracingCounters::MEANINGS),

@@ -405,4 +405,25 @@ export const ENGINE = {
   "Samples of transparent or cut-out surfaces, lines and points that were kept.": ["Eșantioane de straturi păstrate.", "Échantillons de couches conservés.", "Amostras de camadas guardadas."],
   "Layers behind others that were dropped to stay within the memory for layers.": ["Straturi pierdute din lipsă de memorie.", "Couches perdues faute de mémoire.", "Camadas perdidas por falta de memória."],
   "Samples of layers where the depth function contradicted the order of a list.": ["Straturi unde adâncimea contrazice lista.", "Couches où la profondeur contredit la liste.", "Camadas em que a profundidade contradiz a lista."],
-} as const satisfies Record<string, readonly [string, string, string]>;
+
+  // Light at the pixel
+  "other light": ["altă lumină", "autre lumière", "outra luz"],
+  "lines and dots": ["linii și puncte", "lignes et points", "linhas e pontos"],
+  "mirrors and glass": ["oglinzi și sticlă", "miroirs et verre", "espelhos e vidro"],
+  "{0} more rows": ["încă {0} rânduri", "{0} lignes de plus", "mais {0} linhas"],
+  "surface {0}": ["suprafața {0}", "surface {0}", "superfície {0}"],
+  share: ["pondere", "part", "parte"],
+  "× weight": ["× greutate", "× poids", "× peso"],
+  "Show all {0} rows": ["Arată toate cele {0} rânduri", "Montrer les {0} lignes", "Mostrar as {0} linhas"],
+  "Show the first {0} rows": ["Arată primele {0} rânduri", "Montrer les {0} premières lignes", "Mostrar as primeiras {0} linhas"],
+  "share: the part of the samples that show the surface, times what layers in front let through, times its opacity": [
+    "pondere: partea eșantioanelor care arată suprafața, ori ce lasă să treacă straturile din față, ori opacitatea ei",
+    "part : la fraction des échantillons qui montrent la surface, fois ce que les couches devant laissent passer, fois son opacité",
+    "parte: a fração das amostras que mostram a superfície, vezes o que as camadas à frente deixam passar, vezes a sua opacidade",
+  ],
+  "× weight: how the pixel weighs the corner; the rows are multiplied with share and weight": [
+    "× greutate: cât cântărește colțul în pixel; rândurile sunt înmulțite cu ponderea și greutatea",
+    "× poids : le poids du sommet dans le pixel ; les lignes sont multipliées par la part et le poids",
+    "× peso: quanto pesa o canto no píxel; as linhas são multiplicadas pela parte e pelo peso",
+  ],
+} as const satisfies Record<string, readonly [string, string, string, string?]>;

@@ -3,6 +3,7 @@
 import { html, nothing, type TemplateResult } from "lit-html";
 import type { App } from "../app.ts";
 import { isObject, type Json, type JsonObject } from "../json.ts";
+import { firstRows, pixelSum, type LightRow } from "../light-rows.ts";
 import { button, spin } from "../parts/fields.ts";
 import { number } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
@@ -36,20 +37,21 @@ function fate(c: JsonObject, all: JsonObject[]): string {
       return t("layer");
     case "back-face":
       return t("culled: back face");
-    case "box-culled":
-    case "outside-frustum":
-      return t("culled: outside");
-    case "clipped-away":
-      return t("clipped away");
     case "alpha-test":
       return t("alpha test");
+    // Facets without an area on the grid, or with a corner that is no number, are dropped at clipping.
+    case "clipped-away":
+    case "degenerate":
+    case "not-finite":
+      return t("clipped away");
     default:
-      return translated(String(c["stage"]));
+      return t("culled: outside");
   }
 }
 
 function surfaces(app: App, explanation: JsonObject): TemplateResult {
-  const all = objects(explanation["candidates"]);
+  // A surface between the samples is not over the pixel.
+  const all = objects(explanation["candidates"]).filter((c) => c["stage"] !== "between-samples");
   const depth = (c: JsonObject) => (typeof c["depth"] === "number" ? c["depth"] : -1);
   const sorted = [...all].sort((a, b) => depth(b) - depth(a));
   const rows = sorted.map((c): Cell[] => [
@@ -100,50 +102,93 @@ const askKey = (app: App) => JSON.stringify({ want: "ask-all", state: app.state,
 /** Light below this is no light in any picture. */
 const TINY = 1e-7;
 
+/** A colour or a vector with 4 digits: the rows' sum comes out to less than half a byte. */
 const three = (v: Json | undefined) => numbers(v).slice(0, 3).map((n) => number(Math.abs(n) < TINY ? 0 : Number(n.toPrecision(4)))).join(" ");
 
+/** Rows of light that are shown at first. */
+const MOST_ROWS = 24;
+
+/** Whether all rows of light are shown. */
+let showsAllLight = false;
+
+const isOne = (color: readonly number[]) => color.every((c) => Math.abs(c - 1) < 1e-6);
+
+/** Three numbers, or one where they are the same. */
+const oneOrThree = (v: number[]) => (v.every((c) => Math.abs(c - v[0]!) < 1e-6) ? number(Number(v[0]!.toPrecision(4))) : three(v));
+
 function light(app: App, explanation: JsonObject): unknown {
-  const whole = isObject(explanation["light"]) ? explanation["light"] : {};
-  const points = objects(whole["points"]);
-  if (!points.length) return nothing;
+  const found = pixelSum(explanation, app.get("settings.color-space") === "raw");
+  if (!found) return nothing;
+  const { points, sum } = found;
+  const shown = showsAllLight ? found.rows : firstRows(found.rows, MOST_ROWS);
   const names = (app.answerTo("explain")?.ok["lights"] as string[] | undefined) ?? [];
-  const point = points[0]!;
-  const shadows = objects(point["shadows"]);
-  const rows: Cell[][] = [];
+  const candidates = objects(explanation["candidates"]);
+  const several = new Set(found.rows.map((r) => r.point).filter((p) => p !== null)).size > 1;
+  const hasShare = found.rows.some((r) => r.share && !isOne(r.share));
+  const hasWeight = found.rows.some((r) => r.corner !== null);
   let head = "R·V";
-  for (const evaluation of objects(point["evaluations"])) {
-    const corner = evaluation["corner"];
-    for (const l of objects(evaluation["lights"])) {
-      const highlight = isObject(l["highlight"]) ? l["highlight"] : null;
-      if (highlight?.["h"]) head = "N·H";
-      const shadow = shadows.find((s) => s["light"] === l["light"]);
-      const S = numbers(l["visibility"]);
-      const blocked = shadow && typeof shadow["blocker"] === "number" && S.some((v) => v < 1);
-      const sum = [0, 1, 2].map((i) => ["ambient", "diffuse", "specular"].reduce((s, k) => s + (numbers(l[k])[i] ?? 0), 0));
-      const name = names[Number(l["light"])] ?? `LIGHT${Number(l["light"])}`;
-      rows.push([
-        typeof corner === "number" ? `${name} (${t("corner {0}", corner)})` : name,
-        Number(Number(l["n-l"]).toPrecision(4)),
-        highlight ? Number(Number(highlight["cosine"]).toPrecision(4)) : null,
-        Number(Number(l["attenuation"]).toPrecision(4)),
-        blocked ? `${three(l["visibility"])} (${t("facet {0}", String(shadow["blocker"]))})` : three(l["visibility"]),
-        three(l["ambient"]),
-        three(l["diffuse"]),
-        three(l["specular"]),
-        three(sum),
-      ]);
-    }
-    rows.push([t("scene"), null, null, null, null, three(evaluation["ambient"]), null, null, three(evaluation["ambient"])]);
-  }
-  const more = points.length > 1 ? html`<p class="note">${t("Of {0} surfaces in this pixel, the first.", points.length)}</p>` : nothing;
+
+  /** What a row is about: the light, and where there are more than one, surface and corner. */
+  const nameOf = (r: LightRow): string => {
+    const kinds: Record<Exclude<LightRow["kind"], "light">, string> = {
+      scene: t("scene"),
+      other: t("other light"),
+      background: t("background"),
+      lines: t("lines and dots"),
+      mirrored: t("mirrors and glass"),
+      rest: t("{0} more rows", r.count ?? 0),
+    };
+    const name = r.kind === "light" ? (names[r.light!] ?? `LIGHT${r.light}`) : kinds[r.kind];
+    const facet = r.point === null ? null : points[r.point]!["facet"];
+    const surface = candidates.find((c) => c["facet"] === facet)?.["surface"];
+    const where = [
+      several && r.point !== null ? (surface === undefined ? t("facet {0}", String(facet)) : t("surface {0}", String(surface))) : "",
+      r.corner === null ? "" : t("corner {0}", r.corner),
+    ].filter(Boolean);
+    return where.length ? `${name} (${where.join(", ")})` : name;
+  };
+  const rows = shown.map((r): Cell[] => {
+    const highlight = isObject(r.terms?.["highlight"]) ? r.terms["highlight"] : null;
+    if (highlight?.["h"]) head = "N·H";
+    const S = numbers(r.terms?.["visibility"]);
+    const shadow = r.point === null ? undefined : objects(points[r.point]!["shadows"]).find((s) => s["light"] === r.light);
+    const blocked = shadow && typeof shadow["blocker"] === "number" && S.some((v) => v < 1);
+    const short = (v: Json | undefined) => (typeof v === "number" ? Number(v.toPrecision(4)) : null);
+    return [
+      nameOf(r),
+      short(r.terms?.["n-l"]),
+      short(highlight?.["cosine"]),
+      short(r.terms?.["attenuation"]),
+      r.terms ? `${three(S)}${blocked ? ` (${t("facet {0}", String(shadow["blocker"]))})` : ""}` : null,
+      ...(hasShare ? [r.share && oneOrThree(r.share)] : []),
+      ...(hasWeight ? [r.corner === null ? null : short(r.weight)] : []),
+      r.ambient && three(r.ambient),
+      r.diffuse && three(r.diffuse),
+      r.specular && three(r.specular),
+      three(r.sum),
+    ];
+  });
+  const factors = [...(hasShare ? [t("share")] : []), ...(hasWeight ? [t("× weight")] : [])];
+  rows.push([t("sum"), null, null, null, null, ...factors.map(() => null), null, null, null, three(sum)]);
+
+  const whole = isObject(explanation["light"]) ? explanation["light"] : {};
+  const toggle = () => {
+    showsAllLight = !showsAllLight;
+    app.changed();
+  };
+  const more =
+    found.rows.length > MOST_ROWS ? button(showsAllLight ? t("Show the first {0} rows", MOST_ROWS) : t("Show all {0} rows", found.rows.length), toggle) : nothing;
   return html`${table({
     name: t("Light at the pixel"),
-    columns: [t("light"), "L·N", head, "f_att", "S", t("ambient"), t("diffuse"), t("specular"), t("sum")],
+    columns: [t("light"), "L·N", head, "f_att", "S", ...factors, t("ambient"), t("diffuse"), t("specular"), t("sum")],
     rows,
+    current: rows.length - 1,
     caption: true,
   })}
   ${more}
-  <p class="note">${t("Sum of the samples: {0}; bytes: {1}", three(whole["straight"]), numbers(whole["bytes"]).slice(0, 3).join(" "))}</p>`;
+  ${hasShare ? html`<p class="note">${t("share: the part of the samples that show the surface, times what layers in front let through, times its opacity")}</p>` : nothing}
+  ${hasWeight ? html`<p class="note">${t("× weight: how the pixel weighs the corner; the rows are multiplied with share and weight")}</p>` : nothing}
+  <p class="note">${t("Sum of the samples: {0}; bytes: {1}", three(whole["straight"]), numbers(explanation["bytes"]).slice(0, 3).join(" "))}</p>`;
 }
 
 interface RayNode extends Node {

@@ -106,8 +106,9 @@ export class Playback {
       app.after("play", 1000 / Math.min(app.lab.speed, 60) / 2, tick);
     };
     const next = () => app.after("play", Math.max(0, 1000 / app.lab.speed - (performance.now() - last)), tick);
-    // At the end, play begins again.
-    if (app.lab.step === null || app.lab.step >= app.stepCount) app.goToStep(1);
+    // At the end, play begins again; a link's step waits for the recording.
+    const { step } = app.lab;
+    if (step === null || (app.stepCount > 0 && step >= app.stepCount)) app.goToStep(1);
     tick();
     app.changed();
   }

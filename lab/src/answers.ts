@@ -29,6 +29,8 @@ export interface Catalog {
 
 export interface Complete {
   state: JsonObject;
+  /** Why a picture of the state would be refused. */
+  refusal?: { message: string; hint: string } | null;
   lights: JsonObject[];
   materials: JsonObject[];
   camera: JsonObject;

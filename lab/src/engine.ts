@@ -9,14 +9,18 @@ export interface Answer {
   planes: Uint8Array[];
 }
 
+/** The most characters of a reason that are told. */
+const LONGEST_REASON = 300;
+
+const short = (reason: string) => (reason.length > LONGEST_REASON ? `${reason.slice(0, LONGEST_REASON - 1)}…` : reason);
+
 /** Why the engine refused a request. */
 export class Refusal extends Error {
-  constructor(
-    message: string,
-    readonly hint: string | null,
-    readonly path: string | null,
-  ) {
-    super(message);
+  readonly hint: string | null;
+
+  constructor(message: string, hint: string | null) {
+    super(short(message));
+    this.hint = hint && short(hint);
   }
 }
 
@@ -90,7 +94,7 @@ class Line {
     this.running = undefined;
     const error = data.json["error"] as JsonObject | undefined;
     if (error?.["broken"]) this.restart();
-    if (error) job.reject(new Refusal(String(error["message"]), text(error["hint"]), text(error["path"])));
+    if (error) job.reject(new Refusal(String(error["message"]), text(error["hint"])));
     else job.resolve({ ok: data.json["ok"] as JsonObject, planes: data.planes });
     this.next();
   }

@@ -64,7 +64,7 @@ const LONGEST_UNPACKED = 4_000_000;
 /** A part of a link that cannot be. */
 export interface Problem {
   key: string;
-  what: "unknown-field" | "bad-value" | "unreadable";
+  what: "unknown-field" | "bad-value" | "unreadable" | "outside";
 }
 
 /** The state of picture B. */

@@ -524,4 +524,7 @@ export const TERMS = {
     "A sombra: 1 se a luz chega ao ponto, 0 se é tapada, entre ambos na penumbra ou através de vidro.",
     "Shadow: 1 if the light reaches the point, 0 if it is kept away, between them in penumbra or through glass.",
   ],
+
+  // Links, settings and handles
+  "outside of the picture": ["în afara imaginii", "hors de l’image", "fora da imagem"],
 } as const satisfies Record<string, readonly [string, string, string, string?]>;

@@ -97,3 +97,53 @@ test("the focus goes to Add light when the last light goes", async (page) => {
   }
   assert.equal(await focused(page), "Add light");
 });
+
+test("a wrong field of a link is told by its key, and only that is dropped", async (page) => {
+  for (const [wrong, key, kept = ""] of [
+    ["settings.width=0", "settings.width"],
+    ["settings.width=99999999", "settings.width"],
+    ["settings.depth-bits=99", "settings.depth-bits"],
+    ["settings.samples=0", "settings.samples"],
+    ["settings.samples=17", "settings.samples"],
+    ["settings.shadows=map&settings.shadow-map-size=0", "settings.shadow-map-size", "settings.shadows=map"],
+    ["settings.acceleration=octree", "settings.acceleration"],
+    [
+      "settings.visibility=ray-cast&settings.acceleration=octree&settings.samples=0",
+      "settings.samples",
+      "settings.acceleration=octree&settings.visibility=ray-cast",
+    ],
+    ["settings.transparency=kay&settings.transparency-order=back-to-front", "settings.transparency-order", "settings.transparency=kay"],
+    ["settings.channels.cast-shadow=true", "settings.channels.cast-shadow"],
+    ["b.settings.samples=17&compare=side", "b.settings.samples", "compare=side"],
+    ["pixel=500,3", "pixel"],
+    ['second={"foo":1}', "second.foo"],
+    ['second={"zoom-factor":0}', "second"],
+    ['models=["builtin:nothing"]&settings.shading=flat&settings.visibility=warnock', "models", "settings.shading=flat&settings.visibility=warnock"],
+    ['settings.visibility=nonsense&models=["builtin:nothing"]', "settings.visibility,models"],
+  ]) {
+    // A key that comes twice has its last value.
+    await open(page, `${SMALL}&${wrong}&lang=en`);
+    const told = await alertOf(page);
+    assert.match(told, /^In the link: /);
+    assert.deepEqual([...told.matchAll(/`([a-z]+[.\w-]*)`: /g)].map((m) => m[1]).sort(), key.split(",").sort(), told);
+    const form = await fragment(page);
+    const usual = ["models", "settings.width", "settings.height", "settings.samples", "lang"];
+    const others = [...form].filter(([key]) => !usual.includes(key)).sort().map((pair) => pair.join("="));
+    assert.equal(others.join("&"), kept, told);
+  }
+  await open(page, `${SMALL}&settings.visibility=${"x".repeat(900)}`);
+  const told = await alertOf(page);
+  assert.ok(told.length < 360 && told.endsWith("…"), told);
+});
+
+test("play begins at the link's step", async (page) => {
+  await open(page, `${SMALL}&page=visibility&settings.visibility=warnock&step=30&play=1&speed=5`);
+  const slider = page.getByRole("slider", { name: "Step" });
+  const seen = [];
+  await eventually(async () => {
+    seen.push(Number(await slider.inputValue()));
+    return seen.at(-1) >= 32;
+  }, true);
+  assert.ok(seen.every((step) => step === 1 || step >= 30), seen.join());
+  assert.ok(!(seen.includes(2) || seen.includes(3)));
+});

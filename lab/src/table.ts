@@ -834,6 +834,12 @@ const PAGE = {
     "image : décidé pour chaque pixel, avec son crénelage ; objet : pour des polygones entiers, quelle que soit la résolution",
     "imagem: decidido para cada píxel, com o seu serrilhado; objeto: para polígonos inteiros, qualquer que seja a resolução",
   ],
+  "A highlight inside a face: Gouraud interpolates from the corners, where there is none, and loses it.": [
+    "O strălucire în interiorul unei fețe: Gouraud interpolează din colțuri, unde nu este, și o pierde.",
+    "Un reflet à l’intérieur d’une face : Gouraud interpole depuis les sommets, où il n’y en a pas, et le perd.",
+    "Um brilho no interior de uma face: Gouraud interpola a partir dos cantos, onde não há, e perde-o.",
+  ],
+  "Show the lost highlight": ["Arată strălucirea pierdută", "Montrer le reflet perdu", "Mostrar o brilho perdido"],
 } as const satisfies Record<string, readonly [string, string, string, string?]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

@@ -16,6 +16,7 @@ import { depthCue } from "./depth-cue.ts";
 import { evaluations } from "./evaluations.ts";
 import { facing } from "./facing.ts";
 import { lightArrays } from "./light-arrays.ts";
+import { lostHighlight } from "./lost-highlight.ts";
 import { show } from "./picture.ts";
 import { profile } from "./profile.ts";
 import { explanationOf, increments, objects } from "./pixel.ts";
@@ -370,6 +371,7 @@ export function shading(app: App): TemplateResult {
   return html`<section class="region" aria-labelledby="shading-title">
       <h2 id="shading-title">${t("Flat, Gouraud, Phong")}</h2>
       <div class="thumbnails three">${["flat", "gouraud", "phong"].map(one)}</div>
+      ${lostHighlight(app)}
     </section>
     ${evaluations(app)} ${profile(app)} ${normals(app)}
     <section class="region" aria-labelledby="defects-title">

@@ -526,5 +526,15 @@ export const TERMS = {
   ],
 
   // Links, settings and handles
+  "Only {0} sort polygons back to front": [
+    "Doar {0} sortează poligoanele din spate în față",
+    "Seuls {0} trient les polygones d’arrière en avant",
+    "Só {0} ordenam os polígonos de trás para a frente",
+  ],
+  "Only a shadow algorithm finds cast shadows": [
+    "Doar un algoritm de umbre găsește umbrele purtate",
+    "Seul un algorithme d’ombres trouve les ombres portées",
+    "Só um algoritmo de sombras encontra as sombras projetadas",
+  ],
   "outside of the picture": ["în afara imaginii", "hors de l’image", "fora da imagem"],
 } as const satisfies Record<string, readonly [string, string, string, string?]>;

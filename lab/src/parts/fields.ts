@@ -131,11 +131,12 @@ export function check(
   return explained(field, label, more.term);
 }
 
-export function radio(label: string, name: string, isChecked: boolean, choose: () => void, term?: Term): TemplateResult {
-  const field = html`<label class="check">
-    <input type="radio" name=${name} .checked=${live(isChecked)} @change=${choose} />
-    <span>${label}</span>
-  </label>`;
+export function radio(label: string, name: string, isChecked: boolean, choose: () => void, term?: Term, against: string | null = null): TemplateResult {
+  const reason = reasonOf(`${name} ${label}`, against);
+  const field = html`<label class="check" title=${against ?? nothing}>
+      <input type="radio" name=${name} .checked=${live(isChecked)} ?disabled=${against !== null} aria-describedby=${reason.id} @change=${choose} />
+      <span>${label}</span></label
+    >${reason.template}`;
   return explained(field, label, term);
 }
 

@@ -50,6 +50,15 @@ function reasonAgainst(app: App, setting: string, picture: Picture): string | nu
   }
 }
 
+/** Algorithms that sort polygons back to front. */
+const SORTING = ["painter", "bsp"];
+
+/** Why an option of a setting does not go with the present algorithms; `null` if it does. */
+function reasonAgainstOption(app: App, setting: string, value: string, picture: Picture): string | null {
+  const isUnsorted = setting === "transparency-order" && value === "back-to-front" && !SORTING.includes(text(app, "settings.visibility", picture));
+  return isUnsorted ? t("Only {0} sort polygons back to front", SORTING.join(", ")) : null;
+}
+
 /** Changes a choice, and takes back others that would not go with it. */
 export function choose(app: App, setting: string, value: string, picture: Picture) {
   const fields: Record<string, Json> = { [`settings.${setting}`]: value };
@@ -59,8 +68,7 @@ export function choose(app: App, setting: string, value: string, picture: Pictur
     const coherence = app.get("settings.coherence", picture);
     if (Array.isArray(coherence) && !coherence.every((c) => usable.includes(String(c)))) fields["settings.coherence"] = null;
     if (value !== "z-buffer" && app.get("settings.depth-bits", picture) !== null) fields["settings.depth-bits"] = null;
-    const isList = ["painter", "bsp"].includes(value);
-    if (!isList && app.get("settings.transparency-order", picture) === "back-to-front") {
+    if (!SORTING.includes(value) && app.get("settings.transparency-order", picture) === "back-to-front") {
       fields["settings.transparency-order"] = app.catalog?.defaults ? "a-buffer" : "sorted";
     }
   }
@@ -69,6 +77,8 @@ export function choose(app: App, setting: string, value: string, picture: Pictur
   const usesRays = after("visibility") === "ray-cast" || after("shadows") === "ray" || after("global") === "ray-trace";
   if (!usesRays && app.get("settings.acceleration", picture) !== null) fields["settings.acceleration"] = null;
   if (after("shadows") !== "volume" && app.get("settings.volume-counting", picture) !== null) fields["settings.volume-counting"] = null;
+  const hidesShadows = setting === "shadows" && value === "none";
+  if (hidesShadows && app.get("settings.channels.cast-shadow", picture) === true) fields["settings.channels.cast-shadow"] = false;
   if (picture === "a") {
     // Another algorithm has other steps.
     if (setting === "visibility" || setting === "global") app.setLab({ step: null, steps: "all" });
@@ -81,7 +91,8 @@ type Explained = Key & Term;
 
 function registryCombo(app: App, label: Explained, setting: string, registry: string, picture: Picture, usual = "") {
   const value = text(app, `settings.${setting}`, picture) || usual;
-  return combo(t(label), value, including(options(app, registry), value), (v) => choose(app, setting, v, picture), {
+  const list = options(app, registry).map((o) => ({ ...o, reason: reasonAgainstOption(app, setting, o.value, picture) }));
+  return combo(t(label), value, including(list, value), (v) => choose(app, setting, v, picture), {
     reason: reasonAgainst(app, setting, picture),
     key: `${picture} ${setting}`,
     term: label,
@@ -200,6 +211,10 @@ export const TERMS = [
   ["specular", "Specular term"],
 ] as const;
 
+/** Why a channel does not go with the present algorithms; `null` if it does. */
+const reasonAgainstChannel = (app: App, field: string): string | null =>
+  field === "cast-shadow" && app.get("settings.shadows") === "none" ? t("Only a shadow algorithm finds cast shadows") : null;
+
 function channels(app: App): TemplateResult {
   const switches = app.get("settings.channels") as Record<string, Json> | undefined;
   const there = CHANNELS.filter(([field]) => switches && Object.hasOwn(switches, field));
@@ -214,7 +229,7 @@ function channels(app: App): TemplateResult {
   return group(
     t("Channels shown"),
     [
-      ...there.map(([field, label]) => radio(t(label), "channel", field === shown, () => set(field, null), label)),
+      ...there.map(([field, label]) => radio(t(label), "channel", field === shown, () => set(field, null), label, reasonAgainstChannel(app, field))),
       ...TERMS.map(([field, label]) => radio(t(label), "channel", field === shown, () => set("color", field), label)),
     ],
     "two",

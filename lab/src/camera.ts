@@ -54,6 +54,20 @@ export function project(eye: Eye, point: Vector): { x: number; y: number; depth:
   return { x: 0.5 + dot(from, eye.right) / (2 * half * eye.aspect), y: 0.5 - dot(from, eye.up) / (2 * half), depth };
 }
 
+/**
+ * Where a point outside of the picture is pointed to: the place on the picture's edge, and the direction
+ * from the centre in degrees, clockwise from the right. A point behind the eye lies to the side where one
+ * would turn to it.
+ */
+export function edgePlace(eye: Eye, point: Vector): { x: number; y: number; angle: number } {
+  const from = minus(point, eye.position);
+  const [u, v] = [dot(from, eye.right), -dot(from, eye.up)];
+  // Straight behind the eye no side is nearer: take the lower edge.
+  const [dx, dy] = Math.hypot(u, v) > 1e-9 ? [u / eye.aspect, v] : [0, 1];
+  const scale = 0.5 / Math.max(Math.abs(dx), Math.abs(dy));
+  return { x: 0.5 + dx * scale, y: 0.5 + dy * scale, angle: (Math.atan2(dy, dx * eye.aspect) * 180) / Math.PI };
+}
+
 /** The point at a place in the picture and a depth. */
 export function unproject(eye: Eye, x: number, y: number, depth: number): Vector {
   const half = halfHeight(eye, depth);

@@ -1,6 +1,8 @@
 // What an audit of the page found, by roles and names.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { after } from "node:test";
 import { SMALL, close, eventually, fragment, open, pictureOf, ready, test } from "./browser.mjs";
 
@@ -125,7 +127,7 @@ test("a wrong field of a link is told by its key, and only that is dropped", asy
     await open(page, `${SMALL}&${wrong}&lang=en`);
     const told = await alertOf(page);
     assert.match(told, /^In the link: /);
-    assert.deepEqual([...told.matchAll(/`([a-z]+[.\w-]*)`: /g)].map((m) => m[1]).sort(), key.split(",").sort(), told);
+    assert.deepEqual([...told.matchAll(/(?:^In the link: |; )`([a-z]+[.\w-]*)`: /g)].map((m) => m[1]).sort(), key.split(",").sort(), told);
     const form = await fragment(page);
     const usual = ["models", "settings.width", "settings.height", "settings.samples", "lang"];
     const others = [...form].filter(([key]) => !usual.includes(key)).sort().map((pair) => pair.join("="));
@@ -146,4 +148,78 @@ test("play begins at the link's step", async (page) => {
   }, true);
   assert.ok(seen.every((step) => step === 1 || step >= 30), seen.join());
   assert.ok(!(seen.includes(2) || seen.includes(3)));
+});
+
+test("what the present algorithms cannot do is disabled, with the reason", async (page) => {
+  await open(page, `${SMALL}&settings.transparency=kay`);
+  const channels = page.getByRole("group", { name: "Channels shown" });
+  const cast = channels.getByRole("radio", { name: "Cast shadow" });
+  const reason = (field) => field.evaluate((e) => document.getElementById(e.getAttribute("aria-describedby"))?.textContent);
+  assert.equal(await cast.isDisabled(), true);
+  assert.match(await reason(cast), /shadow algorithm/);
+  assert.equal(await channels.getByRole("radio", { name: "Attached shadow" }).isDisabled(), false);
+  await page.getByRole("combobox", { name: "Shadows", exact: true }).selectOption("ray");
+  await cast.check();
+  await ready(page);
+  assert.equal(await alertOf(page), "");
+  await page.getByRole("combobox", { name: "Shadows", exact: true }).selectOption("none");
+  await ready(page);
+  assert.equal(await alertOf(page), "");
+  assert.equal((await fragment(page)).get("settings.channels.cast-shadow"), null);
+
+  const sorted = page.getByRole("combobox", { name: "Transparency order" }).locator('option[value="back-to-front"]');
+  for (const [algorithm, isDisabled] of [["z-buffer", true], ["painter", false], ["bsp", false], ["warnock", true]]) {
+    await page.getByRole("combobox", { name: "Visibility", exact: true }).selectOption(algorithm);
+    await eventually(() => sorted.isDisabled(), isDisabled, algorithm);
+    if (isDisabled) assert.match(await sorted.getAttribute("title"), /painter, bsp/);
+  }
+});
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+test("targets are large enough, or apart", async (page) => {
+  for (const fragment of [
+    "page=shading&pixel=80,60",
+    "page=illumination&pixel=80,60&lang=ro",
+    "page=illumination&pixel=80,60&lang=fr",
+    "page=scene&pixel=80,60&lang=fr",
+    "page=scene&pixel=80,60&lang=ro",
+    "page=visibility&pixel=80,60&lang=fr&settings.visibility=scan-line",
+    "page=pipeline&pixel=80,60&lang=ro",
+  ]) {
+    await open(page, `${SMALL}&${fragment}`);
+    await page.waitForTimeout(600);
+    await page.evaluate(AXE);
+    const { violations } = await page.evaluate(() => axe.run(document, { runOnly: { type: "rule", values: ["target-size"] } }));
+    assert.deepEqual(violations.flatMap((v) => v.nodes.map((n) => `${n.html.slice(0, 120)}: ${n.failureSummary}`)), [], fragment);
+  }
+}, { bypassCSP: true });
+
+test("lights outside of the picture have handles on its edge", async (page) => {
+  const lights = [[0, 30, 0], [-30, 0, 0], [2, 0, 40]].map((position, i) => ({ name: `LIGHT${i}`, kind: { type: "point", position }, diffuse: [0.3, 0.3, 0.3] }));
+  await open(page, `models=["builtin:cubs"]&settings.width=320&settings.height=240&settings.samples=1&viewpoint.view="front"&lights=${encodeURIComponent(JSON.stringify(lights))}`);
+  const picture = await page.getByRole("application", { name: "Picture" }).boundingBox();
+  const handle = (number) => page.getByRole("button", { name: `LIGHT${number} handle` });
+  const centre = async (number) => {
+    const { x, y, width, height } = await handle(number).boundingBox();
+    return [x + width / 2 - picture.x, y + height / 2 - picture.y];
+  };
+  for (const number of [0, 1, 2]) {
+    const [x, y] = await centre(number);
+    assert.ok(x > 12 && y > 12 && x < picture.width - 12 && y < picture.height - 12, `LIGHT${number}: ${x}, ${y}`);
+    assert.match(await handle(number).getAttribute("title"), /outside of the picture/);
+  }
+  assert.ok((await centre(0))[1] < 40 && (await centre(1))[0] < 40);
+
+  // A drag brings each into the picture.
+  for (const number of [0, 2]) {
+    const [x, y] = await centre(number);
+    await page.mouse.move(picture.x + x, picture.y + y);
+    await page.mouse.down();
+    await page.mouse.move(picture.x + 200, picture.y + 150, { steps: 4 });
+    await page.mouse.up();
+    await eventually(async () => (await handle(number).getAttribute("title")).includes("outside"), false);
+    const at = await centre(number);
+    assert.ok(Math.hypot(at[0] - 200, at[1] - 150) < 6, at.join());
+  }
 });

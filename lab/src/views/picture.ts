@@ -5,7 +5,7 @@ import { ref } from "lit-html/directives/ref.js";
 import { css } from "../parts/css.ts";
 import type { Plane, Result } from "../answers.ts";
 import { type App } from "../app.ts";
-import { axes, project, unproject, type Eye, type Vector } from "../camera.ts";
+import { axes, edgePlace, project, unproject, type Eye, type Vector } from "../camera.ts";
 import type { JsonObject } from "../json.ts";
 import { placeOf, setPlace } from "../lights.ts";
 import { combo } from "../parts/fields.ts";
@@ -18,8 +18,9 @@ import { chooseShapeAt, chosenOutline, markShapes } from "./chosen.ts";
 /** The result that each canvas shows. */
 const drawn = new WeakMap<HTMLCanvasElement, Result<Plane>>();
 
-/** Puts a plane on a canvas, unless it is there. */
-export function show(canvas: HTMLCanvasElement | undefined, result: Result<Plane> | undefined) {
+/** Puts a plane on a canvas, unless it is there. Until the first one comes, the canvas is empty and of a `size`. */
+export function show(canvas: HTMLCanvasElement | undefined, result: Result<Plane> | undefined, size?: [number, number]) {
+  if (canvas && size && !drawn.has(canvas)) [canvas.width, canvas.height] = size;
   if (!canvas || !result || drawn.get(canvas) === result) return;
   const { bytes, width, height } = result.value;
   if (bytes.length !== width * height * 4) return;
@@ -202,7 +203,21 @@ function cross(app: App): unknown {
   </svg>`;
 }
 
-/** A button for each light with a place in the picture. */
+/** Pixels that the pointer moves before a light outside of the picture comes into it. */
+const PULL = 4;
+
+/** Where the handle of a light stands, and the depth at which it is moved. */
+function handlePlace(eye: Eye, point: Vector): { x: number; y: number; depth: number; angle: number | null; edge: { x: number; y: number } } {
+  const at = project(eye, point);
+  const isInside = at && at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1;
+  if (isInside) return { ...at, angle: null, edge: at };
+  const edge = edgePlace(eye, point);
+  // A light behind the eye comes in front of it when it is moved.
+  const distance = Math.hypot(...point.map((c, i) => c - eye.position[i]!));
+  return { ...(at ?? { x: edge.x, y: edge.y, depth: distance || 1 }), angle: edge.angle, edge };
+}
+
+/** A button for each light with a place: at its place, or on the edge that is nearest to it. */
 function handles(app: App): unknown {
   const eye = eyeOf(app);
   const lights = app.complete?.value.lights;
@@ -210,8 +225,8 @@ function handles(app: App): unknown {
   const one = (light: JsonObject, number: number) => {
     const place = placeOf(light);
     if (!place || place[3] === 0) return nothing;
-    const at = project(eye, [place[0], place[1], place[2]]);
-    if (!at || at.x < 0 || at.x > 1 || at.y < 0 || at.y > 1) return nothing;
+    const at = handlePlace(eye, [place[0], place[1], place[2]]);
+    const isOutside = at.angle !== null;
     const name = `LIGHT${number}`;
     const move = (x: number, y: number, depth: number) => {
       const point = unproject(eye, x, y, depth).map((v) => Number(v.toPrecision(5)));
@@ -222,9 +237,12 @@ function handles(app: App): unknown {
       const box = target.closest('[role="application"]')!.querySelector("canvas")!;
       target.setPointerCapture(e.pointerId);
       app.beginDrag();
-      target.onpointermove = (e) => {
+      let isPulled = !isOutside;
+      target.onpointermove = (to) => {
+        isPulled ||= Math.hypot(to.clientX - e.clientX, to.clientY - e.clientY) >= PULL;
+        if (!isPulled) return;
         const { left, top, width, height } = box.getBoundingClientRect();
-        move((e.clientX - left) / width, (e.clientY - top) / height, at.depth);
+        move((to.clientX - left) / width, (to.clientY - top) / height, at.depth);
       };
       target.onpointerup = target.onpointercancel = () => {
         target.onpointermove = target.onpointerup = null;
@@ -243,10 +261,10 @@ function handles(app: App): unknown {
     };
     return html`<button
       type="button"
-      class="handle"
+      class=${isOutside ? "handle outside" : "handle"}
       aria-label=${t("{0} handle", name)}
-      title=${`${name} ${String(light["name"] ?? "")}`}
-      .style=${css({ left: `${at.x * 100}%`, top: `${at.y * 100}%` })}
+      title=${`${name} ${String(light["name"] ?? "")}${isOutside ? ` (${t("outside of the picture")})` : ""}`}
+      .style=${css({ "--x": `${at.edge.x * 100}%`, "--y": `${at.edge.y * 100}%`, "--angle": `${at.angle ?? 0}deg` })}
       @pointerdown=${down}
       @keydown=${keys}
       @click=${() => {
@@ -284,6 +302,7 @@ export interface Stage {
 export function stage(app: App, s: Stage): TemplateResult {
   const { picture } = s;
   const size = { "--w": String(app.width), "--h": String(app.height) };
+  const own = ["settings.width", "settings.height"].map((path) => Number(app.get(path, picture))) as [number, number];
   const clip: Record<string, string> = s.clip === undefined ? {} : { "clip-path": `inset(0 0 0 ${s.clip}%)` };
   return html`<div
     class=${`stage ${s.style ?? ""}`}
@@ -300,7 +319,7 @@ export function stage(app: App, s: Stage): TemplateResult {
     @dblclick=${(e: MouseEvent) => app.inspect(pixelAt(app, e, canvasOf(e)))}
     @keydown=${(e: KeyboardEvent) => keyDown(app, e, picture)}
   >
-    <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane))}></canvas>
+    <canvas role="img" aria-label=${description(app, picture)} ${ref((e) => show(e as HTMLCanvasElement | undefined, s.plane, own))}></canvas>
     ${picture === "a" ? html`${overlay(app)} ${chosenOutline(app)}` : nothing} ${cross(app)} ${picture === "a" ? html`${asked(app)} ${highlightMarks(app)} ${handles(app)}` : nothing}
   </div>`;
 }

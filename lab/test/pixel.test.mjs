@@ -83,3 +83,47 @@ test("every surface at the pixel has a fate", async (page) => {
     for (const row of rows) assert.match(row.at(-1), FATE);
   }
 });
+
+/** What region Structure holds for each algorithm, with an inspected pixel. */
+const HELD = {
+  "z-buffer": [["table", "Depths"]],
+  "brute-force": [["table", "Depths"]],
+  "scan-line": [["table", "Polygon table"], ["table", "Edge table"], ["table", "Active edge table"], ["table", "Spans"]],
+  warnock: [["table", "Window"], ["tree", "Quadtree"]],
+  painter: [["list", "Depth-sort list"], ["table", "Tests"]],
+  bsp: [["tree", "BSP tree"], ["list", "Back to front"]],
+  "weiler-atherton": [["table", "Clip polygon"], ["list", "Visible polygons"]],
+  "ray-cast": [["tree", "Acceleration structure"]],
+};
+
+const structureOf = (page) => page.getByRole("region", { name: "Structure" });
+
+test("what an algorithm holds is there at every step", async (page) => {
+  for (const [algorithm, held] of Object.entries(HELD)) {
+    for (const step of ["step=1&", "step=2&", "step=30&", "step=200&", ""]) {
+      await open(page, `${SMALL}&page=visibility&settings.visibility=${algorithm}&${step}pixel=85,50`);
+      for (const [role, name] of held) await structureOf(page).getByRole(role, { name, exact: true }).waitFor({ state: "attached" });
+    }
+  }
+});
+
+test("the finished picture has the last clip and the last comparison", async (page) => {
+  await open(page, `${SMALL}&page=visibility&settings.visibility=weiler-atherton`);
+  await structureOf(page).getByRole("table", { name: "Clip polygon" }).getByRole("rowheader", { name: "inside" }).waitFor();
+  await open(page, `${SMALL}&page=visibility&settings.visibility=painter`);
+  await structureOf(page).getByRole("table", { name: "Tests" }).getByText(/^decides/).waitFor();
+});
+
+test("the fields of a step are words", async (page) => {
+  for (const [algorithm, step] of [["bsp", 20], ["bsp", 60], ["bsp", 100], ["weiler-atherton", 50], ["ray-cast", 100], ["brute-force", 3], ["painter", 3], ["z-buffer", 1]]) {
+    for (const lang of ["en", "ro", "fr", "pt"]) {
+      await open(page, `${SMALL}&page=visibility&settings.visibility=${algorithm}&step=${step}&lang=${lang}`);
+      const names = { en: ["Structure", "Step in numbers"] };
+      const table = lang === "en" ? structureOf(page).getByRole("table", { name: names.en[1] }) : page.locator("section.structure table").last();
+      await table.waitFor();
+      const text = (await rowsOf(table)).slice(1).flat().join(" | ");
+      assert.doesNotMatch(text, /_|\bfield |is_hole|nowhere|[a-z]-[a-z]/, `${algorithm} ${step} ${lang}`);
+      if (lang !== "en") assert.doesNotMatch(text, /\b(above|coincident|side|node|corners|hole|area|count|boxes|tested|through|nodes|yes)\b/, `${algorithm} ${step} ${lang}: ${text}`);
+    }
+  }
+});

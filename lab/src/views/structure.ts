@@ -14,6 +14,7 @@ import { valueText } from "../parts/numbers.ts";
 import { rowButton, table, type Cell } from "../parts/table.ts";
 import { tree, type Node } from "../parts/tree.ts";
 import { depthNote } from "../parts/what.ts";
+import { fieldName, fieldValue } from "../step-fields.ts";
 import { stepWords } from "../stepwords.ts";
 import { t, translated } from "../words.ts";
 import { choiceOf, chosenFinder, chosenWords, followsChoice, followStep, goTo } from "./chosen.ts";
@@ -35,7 +36,11 @@ function rowsOf(app: App, facets: (Json | undefined)[], current?: number): { cho
   return { choices: (row) => choiceOf(app, facets[row]), shown: chosen >= 0 ? chosen : current };
 }
 
+/** Stands below tables that the algorithm has not filled at the step. */
+const untilThen = () => html`<p class="note">${t("Empty until the algorithm comes to it.")}</p>`;
+
 function warnock(app: App, f: JsonObject): unknown {
+  const isWindow = f["step"] === "window";
   const rows: Cell[][] = [
     [t("surrounding"), list(f["surrounding"]).length, facets(f["surrounding"])],
     [t("intersecting"), list(f["intersecting"]).length, facets(f["intersecting"])],
@@ -43,15 +48,15 @@ function warnock(app: App, f: JsonObject): unknown {
     [t("disjoint"), Number(f["disjoint"] ?? 0), "–"],
     [t("hidden"), list(f["hidden"]).length, facets(f["hidden"])],
   ];
-  return html`${table({ name: t("Window"), columns: [t("class"), t("polygons"), t("facets")], rows, caption: true })} ${facetButtons(app, f)}
-  ${quadtreeDrawing(app, f)} ${quadtree(app, f)}`;
+  return html`${table({ name: t("Window"), columns: [t("class"), t("polygons"), t("facets")], rows: isWindow ? rows : [], caption: true })}
+  ${isWindow ? html`${facetButtons(app, f)} ${quadtreeDrawing(app, f)}` : untilThen()} ${quadtree(app, f)}`;
 }
 
 function quadtree(app: App, f: JsonObject): unknown {
   const path = String(f["path"] ?? "");
   const quarters = [t("top left"), t("top right"), t("bottom left"), t("bottom right")];
   const known = stepsOf(app, "window");
-  if (known.length) {
+  if (known.length && doneCount(app, known)) {
     const nodes = nodesOf(known, (s) => ({
       id: Number(s["at"]),
       parent: typeof s["parent"] === "number" ? s["parent"] : null,
@@ -114,6 +119,9 @@ function polygonTable(app: App, polygons: JsonObject[], inside: Set<number> | nu
   );
 }
 
+/** The edge table before it is made. */
+const NO_EDGES: JsonObject = { buckets: [] };
+
 /** The rows of each edge table and the facets of their edges, made once. */
 const edgeRows = new WeakMap<JsonObject, { rows: Cell[][]; facets: (Json | undefined)[] }>();
 
@@ -130,14 +138,14 @@ function edgeTable(app: App, f: JsonObject): unknown {
 
 function scanLine(app: App, step: Step): unknown {
   const f = step.fields;
-  if (f["step"] === "edge-table") return html`${edgesDrawing(app, f, null)} ${polygonTable(app, objects(f["polygons"]), null)} ${edgeTable(app, f)}`;
-  const fields = wholeStep(app, step.parent, "edge-table");
-  const inside = new Set(objects(f["spans"]).flatMap((s) => numbers(s["inside"])));
-  const active = objects(f["active_edges"]);
-  const spans = objects(f["spans"]);
+  // The tables of the band: a line's step follows from theirs.
+  const isLine = f["step"] === "line";
+  const fields = f["step"] === "edge-table" ? f : isLine ? wholeStep(app, step.parent, "edge-table") : null;
+  const active = objects(isLine ? f["active_edges"] : []);
+  const spans = objects(isLine ? f["spans"] : []);
+  const inside = isLine ? new Set(spans.flatMap((s) => numbers(s["inside"]))) : null;
   const changed = () => app.changed();
-  return html`${fields ? edgesDrawing(app, fields, f) : nothing}
-  ${table(
+  const ofLine = html`${table(
     {
       name: t("Active edge table"),
       columns: ["x", t("polygon"), t("facet"), t("edge")],
@@ -157,8 +165,21 @@ function scanLine(app: App, step: Step): unknown {
     },
     changed,
   )}
-  ${fields ? polygonTable(app, objects(fields["polygons"]), inside) : nothing}
-  ${fields ? edgeTable(app, fields) : nothing}`;
+  ${isLine ? nothing : untilThen()}`;
+  const ofBand = html`${polygonTable(app, objects(fields?.["polygons"]), inside)} ${edgeTable(app, fields ?? NO_EDGES)}`;
+  return html`${fields ? edgesDrawing(app, fields, isLine ? f : null) : nothing} ${isLine ? html`${ofLine} ${ofBand}` : html`${ofBand} ${ofLine}`}`;
+}
+
+/** The last comparison of all, once the picture is finished. */
+function lastCompared(app: App): JsonObject | null {
+  const { recording } = app;
+  const count = recording?.value.groups.find((g) => g.name === "compared")?.count ?? 0;
+  if (!count || presentStep(app) < (recording?.value.steps ?? 0)) return null;
+  const request: JsonObject = { want: "steps", state: app.state, show: "compared", from: count, to: count };
+  app.answer("last compared", request, true);
+  const answer = app.answers.get("last compared");
+  const fields = answer?.key === JSON.stringify(request) ? objects(answer.value.ok["steps"])[0]?.["fields"] : null;
+  return isObject(fields) ? fields : null;
 }
 
 /** Painter's tests in their order; the third and the fourth may be asked with P and Q exchanged. */
@@ -166,20 +187,19 @@ const TESTS = ["depth-extent", "x-extent", "y-extent", "behind-plane", "in-front
 
 function painter(app: App, step: Step): unknown {
   const f = step.fields;
-  const decided = TESTS.indexOf(String(f["test"]));
-  const tests =
-    f["step"] === "compared"
-      ? table({
-          name: t("Tests"),
-          columns: [t("test"), t("for polygons {0} and {1}", String(f["polygon"]), String(f["with"]))],
-          rows: TESTS.slice(0, decided + 1).map((test, i) => [
-            `${i === 0 ? "" : i <= 5 ? `${i}. ` : ""}${translated(test)}`,
-            i === decided ? t("decides: {0}", translated(String(f["verdict"]))) : t("no"),
-          ]),
-          current: decided,
-          caption: true,
-        })
-      : nothing;
+  const compared = f["step"] === "compared" ? f : lastCompared(app);
+  const decided = TESTS.indexOf(String(compared?.["test"]));
+  const tests = html`${table({
+    name: t("Tests"),
+    columns: [t("test"), compared ? t("for polygons {0} and {1}", String(compared["polygon"]), String(compared["with"])) : t("verdict")],
+    rows: TESTS.slice(0, decided + 1).map((test, i) => [
+      `${i === 0 ? "" : i <= 5 ? `${i}. ` : ""}${translated(test)}`,
+      i === decided ? t("decides: {0}", translated(String(compared?.["verdict"]))) : t("no"),
+    ]),
+    current: decided,
+    caption: true,
+  })}
+  ${compared ? nothing : html`<p class="note">${t("No polygons are compared in this step.")}</p>`}`;
 
   const sorted = sortedList(app, f);
   const words: Record<EntryState, string> = { painted: t("painted"), waits: t("waits"), moved: t("moved, waits"), part: t("part, waits"), split: t("split") };
@@ -190,8 +210,8 @@ function painter(app: App, step: Step): unknown {
     facet: e.facet,
     choice: () => choiceOf(app, e.facet, e.at),
   }));
-  return html`${tests} ${pairButtons(app, f)} ${listDrawing(app, f, sorted)} ${items.length ? entries(app, t("Depth-sort list"), items) : nothing}
-  ${f["step"] === "piece" ? fieldsTable(f) : nothing}`;
+  return html`${tests} ${pairButtons(app, f)} ${items.length ? listDrawing(app, f, sorted) : nothing} ${entries(app, t("Depth-sort list"), items)}
+  ${items.length ? nothing : untilThen()}`;
 }
 
 /** The two polygons of a comparison, to be chosen. */
@@ -261,46 +281,50 @@ function bsp(app: App, step: Step): unknown {
     choice: () => choiceOf(app, numbers(s["polygons"])[0], s["at"]),
   }));
   const current = typeof f["node"] === "number" ? f["node"] : null;
-  return html`${bspDrawing(app, f)} ${nodes.length ? labelledTree(app, t("BSP tree"), nodes, current, all.length ? doneCount(app, all) : 1) : nothing}
-  ${order.length ? entries(app, t("Back to front"), order) : nothing}
-  ${f["step"] === "piece" || f["step"] === "overruled" ? fieldsTable(f) : nothing}`;
+  return html`${bspDrawing(app, f)} ${labelledTree(app, t("BSP tree"), nodes, current, all.length ? doneCount(app, all) : nodes.length)}
+  ${entries(app, t("Back to front"), order)} ${order.length ? nothing : untilThen()}`;
 }
 
 function weilerAtherton(app: App, step: Step): unknown {
   const f = step.fields;
   const here = presentStep(app);
   const visible = doneOf(app, "visible");
-  const clip =
-    f["step"] === "clip"
-      ? table({
-          name: t("Clip polygon"),
-          columns: [t("list"), t("polygons"), t("facets")],
-          rows: [
-            [t("clip polygon"), 1, String(f["facet"])],
-            [t("inside"), list(f["inside"]).length, facets(f["inside"])],
-            [t("outside"), Number(f["outside_count"] ?? 0), facets(f["outside"])],
-            [t("hidden, removed"), list(f["hidden"]).length, facets(f["hidden"])],
-          ],
-          choices: (row) => choiceOf(app, row === 0 ? f["facet"] : numbers(f[["inside", "outside", "hidden"][row - 1]!])[0]),
-          caption: true,
-        })
-      : nothing;
+  // A visible polygon follows from the clip in whose inside list it was left.
+  const found = f["step"] === "clip" ? f : f["step"] === "visible" ? wholeStep(app, step.parent, "clip") : null;
+  const last = found?.["step"] === "clip" ? found : null;
+  const clip = html`${table({
+    name: t("Clip polygon"),
+    columns: [t("list"), t("polygons"), t("facets")],
+    rows: last
+      ? [
+          [t("clip polygon"), 1, String(last["facet"])],
+          [t("inside"), list(last["inside"]).length, facets(last["inside"])],
+          [t("outside"), Number(last["outside_count"] ?? 0), facets(last["outside"])],
+          [t("hidden, removed"), list(last["hidden"]).length, facets(last["hidden"])],
+        ]
+      : [],
+    choices: (row) => choiceOf(app, row === 0 ? last?.["facet"] : numbers(last?.[["inside", "outside", "hidden"][row - 1]!])[0]),
+    caption: true,
+  })}
+  ${last || f["step"] === "visible" ? nothing : untilThen()}`;
   const items = visible.map((s) => ({
     text: () => t("facet {0}: {1} square pixels", Number(s["facet"]), valueText(s["area"])),
     isCurrent: s["at"] === here,
     facet: Number(s["facet"]),
     choice: () => choiceOf(app, s["facet"], s["at"]),
   }));
-  return html`${clipDrawing(app, f)} ${clip} ${items.length ? entries(app, t("Visible polygons"), items) : nothing} ${f["step"] === "visible" ? fieldsTable(f) : nothing}`;
+  return html`${clipDrawing(app, f)} ${clip} ${entries(app, t("Visible polygons"), items)}
+  ${items.length || !last ? nothing : untilThen()}`;
 }
 
 function zBuffer(app: App, step: Step): unknown {
   const f = step.fields;
   const depths = step.depths ?? null;
   const choice = choiceOf(app, f["facet"]);
-  return html`${depthsDrawing(app, step)}
+  const isDrawn = f["step"] === "drawn" || f["step"] === "depth-test";
+  return html`${isDrawn ? depthsDrawing(app, step) : nothing}
   ${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing}
-  ${depths ? html`${depthTable(depths)}${depthNote()} ${slopeNote(depths)}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : fieldsTable(f)}`;
+  ${depths ? html`${depthTable(depths)}${depthNote()} ${slopeNote(depths)}` : html`<p class="note">${t("Inspect a pixel to see the depths round it.")}</p>`} ${f["step"] === "drawn" ? runsOf(f) : nothing}`;
 }
 
 /** How depth changes in the plane of the step's facet (P17). */
@@ -402,49 +426,36 @@ function fieldsTable(f: JsonObject): unknown {
   const rows = Object.entries(f)
     .filter(([key]) => !["step", "number", "parent", "frame", "at"].includes(key))
     .map(([key, value]): Cell[] => {
-      const text = valueText(value);
-      return [translated(key), text.length > 160 ? `${text.slice(0, 160)}…` : text];
+      const text = fieldValue(value);
+      return [fieldName(key), text.length > 160 ? `${text.slice(0, 160)}…` : text];
     });
   return table({ name: t("Step in numbers"), columns: [t("field"), t("value")], rows, caption: true });
 }
 
+/** What each algorithm holds, at every one of its steps. */
+const STRUCTURES: Record<string, (app: App, step: Step) => unknown> = {
+  "z-buffer": zBuffer,
+  "brute-force": bruteForce,
+  "scan-line": scanLine,
+  warnock: (app, step) => warnock(app, step.fields),
+  painter,
+  bsp,
+  "weiler-atherton": weilerAtherton,
+  "ray-cast": rayCast,
+};
+
+/** Steps of which the structure shows all fields. */
+const SHOWN_WHOLE = ["window", "edge-table", "line", "drawn", "compared", "first-order", "nearest-first", "clip"];
+
 function content(app: App, step: Step): unknown {
   const f = step.fields;
-  switch (f["step"]) {
-    case "window":
-      return warnock(app, f);
-    case "edge-table":
-    case "line":
-      return scanLine(app, step);
-    case "drawn":
-    case "depth-test":
-      return zBuffer(app, step);
-    case "space":
-    case "rays":
-      return html`${app.get("settings.visibility") === "brute-force" ? bruteForce(app, step) : rayCast(app, step)} ${fieldsTable(f)}`;
-    case "first-order":
-    case "turn":
-    case "compared":
-    case "moved":
-    case "circle":
-    case "split":
-    case "painted":
-      return html`${painter(app, step)} ${f["step"] === "compared" || f["step"] === "first-order" ? nothing : fieldsTable(f)}`;
-    case "piece":
-    case "overruled":
-      return app.get("settings.visibility") === "bsp" ? bsp(app, step) : painter(app, step);
-    case "tree-node":
-    case "tree-visit":
-      return html`${bsp(app, step)} ${fieldsTable(f)}`;
-    case "nearest-first":
-    case "clip":
-    case "visible":
-      return weilerAtherton(app, step);
-    default: {
-      const choice = choiceOf(app, f["facet"]);
-      return html`${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing} ${fieldsTable(f)}`;
-    }
-  }
+  const kind = String(f["step"]);
+  // Rays that go on from surface to surface are shown as a tree of their own.
+  const own = kind.startsWith("ray-") ? undefined : STRUCTURES[String(app.get("settings.visibility"))];
+  const isCommon = ["box", "clipped"].includes(kind) || !own;
+  const choice = isCommon ? choiceOf(app, f["facet"]) : null;
+  return html`${choice ? html`<div class="chips">${rowButton(choice, t("facet {0}", Number(f["facet"])))}</div>` : nothing}
+  ${own?.(app, step)} ${own && SHOWN_WHOLE.includes(kind) ? nothing : fieldsTable(f)}`;
 }
 
 /** Summaries of the details that are open. */

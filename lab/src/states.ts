@@ -25,11 +25,12 @@ export function missingModels(state: JsonObject, files: Map<string, Uint8Array>)
   return models.filter((m): m is string => typeof m === "string" && m.startsWith("file:") && !files.has(nameOf(m)));
 }
 
-/** The state in a file, if it is a state file. */
-export function stateIn(bytes: Uint8Array): JsonObject | null {
+/** The state in a file, if it has fields of a state and is no scene. */
+export function stateIn(bytes: Uint8Array, defaults: JsonObject): JsonObject | null {
   try {
     const value = JSON.parse(new TextDecoder().decode(bytes)) as Json;
-    return isObject(value) && value["vitral"] === 1 ? value : null;
+    if (!isObject(value) || Object.hasOwn(value, "vitral-scene")) return null;
+    return Object.keys(value).some((key) => Object.hasOwn(defaults, key)) ? value : null;
   } catch {
     return null;
   }

@@ -181,11 +181,8 @@ test("targets are large enough, or apart", async (page) => {
   for (const fragment of [
     "page=shading&pixel=80,60",
     "page=illumination&pixel=80,60&lang=ro",
-    "page=illumination&pixel=80,60&lang=fr",
-    "page=scene&pixel=80,60&lang=fr",
     "page=scene&pixel=80,60&lang=ro",
     "page=visibility&pixel=80,60&lang=fr&settings.visibility=scan-line",
-    "page=pipeline&pixel=80,60&lang=ro",
   ]) {
     await open(page, `${SMALL}&${fragment}`);
     await page.waitForTimeout(600);
@@ -222,4 +219,74 @@ test("lights outside of the picture have handles on its edge", async (page) => {
     const at = await centre(number);
     assert.ok(Math.hypot(at[0] - 200, at[1] - 150) < 6, at.join());
   }
+});
+
+const SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+const modelsOf = async (page) => (await fragment(page)).get("models");
+
+test("a file with fields of a state is read as a state", async (page) => {
+  await open(page, SMALL);
+  await drop(page, ["a.json", '{"settings": {"visibility": "nonsense"}}']);
+  await page.getByRole("alert").getByText("a.json: ").waitFor();
+  assert.match(await alertOf(page), /settings\.visibility: there is no visibility algorithm/);
+  await drop(page, ["b.json", '{"models": ["builtin:sphere"], "settings": {"width": 80, "height": 60}}']);
+  await page.waitForFunction(() => document.querySelector("canvas").width === 80);
+
+  // A model by its plain name is the file that is here, or it is asked for.
+  await drop(page, ["c.json", '{"models": ["folder/m.obj"], "settings": {"width": 90, "height": 60}}']);
+  await page.getByText("This link needs your file m.obj").waitFor();
+  await drop(page, ["m.obj", SQUARE]);
+  await ready(page);
+  assert.match(await modelsOf(page), /^\["file:m\.obj#[0-9a-f]{12}"\]$/);
+  assert.match(await pictureOf(page), /^90x60/);
+  await drop(page, ["b.json", '{"vitral": 1, "models": ["builtin:sphere"]}']);
+  await eventually(() => modelsOf(page), '["builtin:sphere"]');
+  await drop(page, ["d.json", '{"models": ["m.obj"]}']);
+  await eventually(async () => /^\["file:m\.obj#[0-9a-f]{12}"\]$/.test(await modelsOf(page)), true);
+  await drop(page, ["e.json", '{"models": ["n.obj"]}'], ["n.obj", `${SQUARE}f 1 3 2\n`]);
+  await eventually(async () => /^\["file:n\.obj#[0-9a-f]{12}"\]$/.test(await modelsOf(page)), true);
+  await ready(page);
+  assert.equal(await alertOf(page), "");
+});
+
+test("each file that cannot be read brings its own message", async (page) => {
+  await open(page, SMALL);
+  const before = await pictureOf(page);
+  for (const [name, text, words] of [
+    ["broken.obj", "v 0 0 0\nf 1 2 9\n", /broken\.obj/],
+    ["other.obj", "v 0 zero 0\n", /other\.obj/],
+    ["empty.obj", "", /empty\.obj: empty file/],
+    ["words.txt", "words", /words\.txt/],
+  ]) {
+    await drop(page, [name, text]);
+    await eventually(async () => words.test(await alertOf(page)), true, name);
+    await page.waitForTimeout(400);
+    assert.match(await alertOf(page), words);
+  }
+  assert.equal(await pictureOf(page), before);
+  assert.equal(await page.getByRole("combobox", { name: "Model", exact: true }).locator("option", { hasText: "broken" }).count(), 0);
+  await drop(page, ["m.obj", SQUARE]);
+  await eventually(async () => (await modelsOf(page)).includes("m.obj"), true);
+  await ready(page);
+  assert.equal(await alertOf(page), "");
+  // A broken file does not replace the good one of its name.
+  await drop(page, ["m.obj", "f 1 2 9\n"]);
+  await page.getByRole("alert").getByText("m.obj").waitFor();
+  await page.getByRole("link", { name: "Shading" }).click();
+  await page.getByRole("button", { name: "Turn left" }).click();
+  await ready(page);
+  assert.equal(await page.getByText("This link needs your file").count(), 0);
+});
+
+test("the first canvas has the state's size", async (page) => {
+  const wrong = [];
+  await page.exposeFunction("saw", (size) => wrong.push(size));
+  await page.addInitScript(() => {
+    new MutationObserver(() => {
+      const canvas = document.querySelector('[role="application"] canvas');
+      if (canvas && `${canvas.width}x${canvas.height}` !== "160x120") saw(`${canvas.width}x${canvas.height}`);
+    }).observe(document, { subtree: true, childList: true, attributes: true });
+  });
+  await open(page, SMALL);
+  assert.deepEqual(wrong.filter((size) => size === "300x150"), []);
 });

@@ -840,6 +840,13 @@ const PAGE = {
     "Um brilho no interior de uma face: Gouraud interpola a partir dos cantos, onde não há, e perde-o.",
   ],
   "Show the lost highlight": ["Arată strălucirea pierdută", "Montrer le reflet perdu", "Mostrar o brilho perdido"],
+  "Phong and Blinn": ["Phong și Blinn", "Phong et Blinn", "Phong e Blinn"],
+  "The angle between N and H is about half of that between R and V: Blinn's exponent is about four times Phong's for the same highlight.": [
+    "Unghiul dintre N și H este cam jumătate din cel dintre R și V: exponentul lui Blinn este de vreo patru ori cel al lui Phong pentru aceeași strălucire.",
+    "L’angle entre N et H est environ la moitié de celui entre R et V : l’exposant de Blinn est environ quatre fois celui de Phong pour le même reflet.",
+    "O ângulo entre N e H é cerca de metade do ângulo entre R e V: o expoente de Blinn é cerca de quatro vezes o de Phong para o mesmo brilho.",
+  ],
+  "Compare n with 4 n": ["Compară n cu 4 n", "Comparer n et 4 n", "Comparar n com 4 n"],
 } as const satisfies Record<string, readonly [string, string, string, string?]>;
 
 export const TABLE = { ...PAGE, ...ENGINE };

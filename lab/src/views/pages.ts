@@ -10,6 +10,7 @@ import { button, combo, radio, spin } from "../parts/fields.ts";
 import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
+import { depthNote } from "../parts/what.ts";
 import { stagePart, t, translated } from "../words.ts";
 import { choiceOf } from "./chosen.ts";
 import { depthCue } from "./depth-cue.ts";
@@ -17,6 +18,7 @@ import { evaluations } from "./evaluations.ts";
 import { facing } from "./facing.ts";
 import { lightArrays } from "./light-arrays.ts";
 import { lostHighlight } from "./lost-highlight.ts";
+import { phongAndBlinn } from "./phong-blinn.ts";
 import { show } from "./picture.ts";
 import { profile } from "./profile.ts";
 import { explanationOf, increments, objects } from "./pixel.ts";
@@ -41,7 +43,7 @@ export function pipeline(app: App): TemplateResult {
   const rows = objects(answer?.["stages"]).map((s): Cell[] => [translated(String(s["stage"])), stagePart(String(s["in"])), stagePart(String(s["out"]))]);
   return html`<section class="region" aria-labelledby="stages-title">
     <h2 id="stages-title">${t("Stages")}</h2>
-    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${facing(app, answer)} ${projector(answer)}
+    ${table({ name: t("Stages"), columns: [t("stage"), t("in"), t("out")], rows })} ${vertices(app, answer)} ${depthNote()} ${facing(app, answer)} ${projector(answer)}
   </section>`;
 }
 
@@ -247,7 +249,7 @@ export function illumination(app: App): TemplateResult {
         </div>
       </div>
     </section>
-    ${depthCue(app)}`;
+    ${phongAndBlinn(app)} ${depthCue(app)}`;
 }
 
 /** The terms of the formula, apart and together. */

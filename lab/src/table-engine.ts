@@ -576,7 +576,12 @@ export const ENGINE = {
   "there is no model": ["nu există niciun model", "il n’y a pas de modèle", "não há modelo"],
   "name a file or {0}": ["numiți un fișier sau {0}", "nommez un fichier ou {0}", "indique um ficheiro ou {0}"],
   "No such file": ["Nu există un astfel de fișier", "Fichier introuvable", "Ficheiro inexistente"],
-  "there is no algorithm {0} for {1}": ["nu există algoritmul {0} pentru {1}", "il n’y a pas d’algorithme {0} pour {1}", "não há algoritmo {0} para {1}"],
+  "there is no algorithm {0}": ["nu există algoritmul {0}", "il n’y a pas d’algorithme {0}", "não há algoritmo {0}"],
+  "choose {0} as visibility, ray as shadows, or ray-trace as global illumination": [
+    "alegeți {0} pentru vizibilitate, ray pentru umbre, sau ray-trace pentru iluminarea globală",
+    "choisissez {0} pour la visibilité, ray pour les ombres, ou ray-trace pour l’illumination globale",
+    "escolha {0} para a visibilidade, ray para as sombras, ou ray-trace para a iluminação global",
+  ],
   "choose {0}": ["alegeți {0}", "choisissez {0}", "escolha {0}"],
   "did you mean {0}?": ["ați vrut să spuneți {0}?", "vouliez-vous dire {0} ?", "queria dizer {0}?"],
   "an acceleration structure is chosen, but {0} casts no rays, nor does anything else": [
@@ -593,4 +598,9 @@ export const ENGINE = {
   "mesh {0}: boundary edges: {1}; it is open": ["plasa {0}: muchii de margine: {1}; este deschisă", "maillage {0} : arêtes de bord : {1} ; il est ouvert", "malha {0}: arestas de fronteira: {1}; está aberta"],
   "so its back faces are drawn too": ["deci se desenează și fețele din spate", "donc ses faces arrière sont tracées aussi", "por isso as faces de trás também se desenham"],
   "{0} such meshes": ["{0} astfel de plase", "{0} maillages de ce genre", "{0} malhas assim"],
+
+  // Drawing of the clip
+  "enlarged {0} times": ["mărit de {0} ori", "agrandi {0} fois", "ampliado {0} vezes"],
+  // Words of stages that mean something else in other places
+  "stage cut": ["tăiate", "coupés", "cortados"],
 } as const satisfies Record<string, readonly [string, string, string, string?]>;

@@ -1,7 +1,7 @@
 // The sentences about why a pixel is as it is. The engine tells them in English; other languages
 // take their numbers and names over.
 
-import { isEnglish, t, translated } from "./words.ts";
+import { isEnglish, t } from "./words.ts";
 
 const PATTERNS: [RegExp, (m: string[]) => string][] = [
   [/^No surface is here: the pixel shows the background\.$/, () => t("No surface is here: the pixel shows the background.")],
@@ -55,7 +55,11 @@ const MESSAGES: [RegExp, (m: string[]) => string][] = [
     /an acceleration structure is chosen, but `([^`]+)` casts no rays, nor does anything else/g,
     (m) => t("an acceleration structure is chosen, but {0} casts no rays, nor does anything else", code(m[1]!)),
   ],
-  [/there is no ([a-z -]+?)(?: algorithm| model)? `([^`]+)`(?=: choose)/g, (m) => t("there is no algorithm {0} for {1}", code(m[2]!), translated(m[1]!))],
+  [/there is no (?:[a-z -]+) `([^`]+)`(?=: choose)/g, (m) => t("there is no algorithm {0}", code(m[1]!))],
+  [
+    /choose the visibility (.+?), the shadows ray, or the global illumination ray-trace/g,
+    (m) => t("choose {0} as visibility, ray as shadows, or ray-trace as global illumination", m[1]!),
+  ],
   [/did you mean (`[^`]+`)\?/g, (m) => t("did you mean {0}?", m[1]!)],
   [/\bchoose ([^;)]+)/g, (m) => t("choose {0}", m[1]!)],
   [/state: line (\d+), column (\d+)/g, (m) => t("state: line {0}, column {1}", m[1]!, m[2]!)],

@@ -12,6 +12,7 @@ import { formText, PAGES, write, type Page } from "./link.ts";
 import { button } from "./parts/fields.ts";
 import { explanationBox } from "./parts/what.ts";
 import { isNarrow } from "./width.ts";
+import { messageWords } from "./why.ts";
 import { t, type Key } from "./words.ts";
 import { cameraToolbar } from "./views/camera.ts";
 import { compareChoice, comparison, comparisonControls, comparisonRegions } from "./views/compare.ts";
@@ -122,7 +123,7 @@ function messages(app: App): TemplateResult {
     app.changed();
   };
   return html`<div class="messages">
-      <div role="alert" class=${app.alert ? "alert" : ""}>${app.alert}</div>
+      <div role="alert" class=${app.alert ? "alert" : ""}>${messageWords(app.alert)}</div>
       ${app.alert ? html`<button type="button" class="dismiss" @click=${dismiss}>${t("Dismiss")}</button>` : nothing}
     </div>
     ${app.missing.length

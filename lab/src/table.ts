@@ -320,7 +320,6 @@ const PAGE = {
   "corner {0}": ["colțul {0}", "sommet {0}", "canto {0}"],
   corner: ["colț", "sommet", "canto"],
   "facet {0}": ["fațeta {0}", "facette {0}", "faceta {0}"],
-  "Of {0} surfaces in this pixel, the first.": ["Din {0} suprafețe în acest pixel, prima.", "De {0} surfaces dans ce pixel, la première.", "De {0} superfícies neste píxel, a primeira."],
   "Sum of the samples: {0}; bytes: {1}": ["Suma eșantioanelor: {0}; octeți: {1}", "Somme des échantillons : {0} ; octets : {1}", "Soma das amostras: {0}; bytes: {1}"],
   "surface {0} of {1}, distance {2}": ["suprafața {0} din {1}, distanța {2}", "face {0} de {1}, distance {2}", "superfície {0} de {1}, distância {2}"],
   Increments: ["Incremente", "Incréments", "Incrementos"],
@@ -759,7 +758,6 @@ const PAGE = {
   "more below": ["altele dedesubt", "d’autres dessous", "mais por baixo"],
   "Drawing of the clip": ["Desenul decupării", "Dessin du découpage", "Desenho do recorte"],
   "visible so far": ["vizibil până acum", "visible jusqu’ici", "visível até agora"],
-  "{0} times larger than the whole picture would be": ["de {0} ori mai mare decât în imaginea întreagă", "{0} fois plus grand que dans l’image entière", "{0} vezes maior do que na imagem inteira"],
   "Acceleration structure": ["Structura de accelerare", "Structure d’accélération", "Estrutura de aceleração"],
   "Drawing of the acceleration structure": ["Desenul structurii de accelerare", "Dessin de la structure d’accélération", "Desenho da estrutura de aceleração"],
   "Inspect a pixel to see what its ray opens in the acceleration structure.": [

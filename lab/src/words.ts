@@ -56,5 +56,5 @@ export function tooltip(text: string): string {
 /** What goes in and out of a stage: numbers with words of the table. */
 export function stagePart(text: string): string {
   if (language === "en") return text;
-  return text.replace(/[a-z][a-z ]*[a-z]/g, (words) => lookUp(words));
+  return text.replace(/[a-z][a-z ]*[a-z]/g, (words) => lookUp(Object.hasOwn(table, `stage ${words}`) ? `stage ${words}` : words));
 }

@@ -11,6 +11,7 @@ import { drawing } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { depthNote } from "../parts/what.ts";
+import { messageWords } from "../why.ts";
 import { stagePart, t, translated } from "../words.ts";
 import { choiceOf } from "./chosen.ts";
 import { depthCue } from "./depth-cue.ts";
@@ -22,17 +23,18 @@ import { phongAndBlinn } from "./phong-blinn.ts";
 import { show } from "./picture.ts";
 import { profile } from "./profile.ts";
 import { explanationOf, increments, objects } from "./pixel.ts";
+import { sceneValue } from "./scene-values.ts";
 
 // ---- Scene ----
 
 export function scene(app: App): TemplateResult {
   const answer = app.answerTo("info")?.ok;
-  const rows = objects(answer?.["rows"]).map((r): Cell[] => [translated(String(r["name"])), r["value"] as Cell]);
+  const rows = objects(answer?.["rows"]).map((r): Cell[] => [translated(String(r["name"])), sceneValue(r["value"])]);
   const warnings = [...new Set([...((answer?.["warnings"] as string[] | undefined) ?? []), ...(app.picture?.value.warnings ?? [])])];
   return html`<section class="region" aria-labelledby="scene-title">
     <h2 id="scene-title">${t("Scene")}</h2>
     ${table({ name: t("Scene"), columns: [t("name"), t("value")], rows })} ${lightArrays(app)}
-    ${warnings.length ? html`<ul class="warnings">${warnings.map((w) => html`<li>${w}</li>`)}</ul>` : nothing}
+    ${warnings.length ? html`<ul class="warnings">${warnings.map((w) => html`<li>${messageWords(w)}</li>`)}</ul>` : nothing}
   </section>`;
 }
 

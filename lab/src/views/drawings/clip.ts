@@ -6,7 +6,7 @@ import type { Json, JsonObject } from "../../json.ts";
 import { t } from "../../words.ts";
 import { isChosen, outlinePath } from "../chosen.ts";
 import { doneOf, list, objects } from "../recorded.ts";
-import { pictureMap, sheet, short, type Area } from "./sheet.ts";
+import { pictureMap, sheet, type Area } from "./sheet.ts";
 
 const contourPath = (contours: Json | undefined) =>
   objects(contours)
@@ -73,7 +73,7 @@ export function clipDrawing(app: App, present: JsonObject): TemplateResult {
         : []),
       ["d-visible", t("visible so far")],
     ],
-    note: area.width < app.width ? t("{0} times larger than the whole picture would be", short(app.width / area.width)) : "",
+    note: area.width < app.width ? t("enlarged {0} times", (app.width / area.width).toFixed(1)) : "",
   });
 }
 

@@ -265,5 +265,5 @@ test("comparing all algorithms explains its columns and keeps the registry's ord
   const order = await page.getByRole("combobox", { name: "Visibility" }).evaluate((s) => [...s.options].map((o) => o.value));
   const places = first.map((name) => order.indexOf(name));
   assert.deepEqual(places, [...places].sort((a, b) => a - b));
-  await page.getByRole("listitem").filter({ hasText: "the first picture of an algorithm" }).waitFor();
+  await page.getByRole("listitem").filter({ hasText: "a picture after the first" }).waitFor();
 });

@@ -262,6 +262,7 @@ function handles(app: App): unknown {
     return html`<button
       type="button"
       class=${isOutside ? "handle outside" : "handle"}
+      data-number=${number}
       aria-label=${t("{0} handle", name)}
       title=${`${name} ${String(light["name"] ?? "")}${isOutside ? ` (${t("outside of the picture")})` : ""}`}
       .style=${css({ "--x": `${at.edge.x * 100}%`, "--y": `${at.edge.y * 100}%`, "--angle": `${at.angle ?? 0}deg` })}
@@ -275,9 +276,7 @@ function handles(app: App): unknown {
         app.lightNumber = number;
         app.dialogs.open("lights");
       }}
-    >
-      ${number}
-    </button>`;
+    ></button>`;
   };
   return lights.map(one);
 }

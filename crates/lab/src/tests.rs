@@ -509,7 +509,7 @@ fn normals_at_the_corners_and_all_lines_of_a_facet_are_told() {
     if let Some(r) = values.iter().find(|row| row["symbol"].as_str().unwrap().starts_with("R (")) {
         let text = r["value"].as_str().unwrap();
         let length: f64 =
-            text.split(' ').map(|c| c.parse::<f64>().unwrap().powi(2)).sum::<f64>().sqrt();
+            text.split(' ').map(|c| c.parse::<f64>().unwrap()).map(|c| c * c).sum::<f64>().sqrt();
         assert!((length - 1.0).abs() < 1e-5, "{text}");
     }
 }

@@ -55,6 +55,8 @@ pub struct NormalOfFace {
 pub fn corner_normals(renderer: &Renderer, facet: u32) -> Result<[CornerNormal; 3], Error> {
     let world = renderer.world();
     check_facet(world, facet)?;
+
+    // Find the triangle in its mesh, and the normals that shading has there.
     let instance = &world.instances[world.instance_of_facet(facet)];
     let mesh = &*instance.mesh;
     let triangle = (facet - instance.first_facet) as usize;
@@ -91,6 +93,8 @@ pub fn corner_normals(renderer: &Renderer, facet: u32) -> Result<[CornerNormal; 
                 });
             }
         }
+
+        // Make means of the sums.
         let mean = sum.normalize_or_zero().as_vec3().to_array();
         let own = || face_normal(mesh, mesh.face_of_triangle(triangle));
         let result = normals.map_or_else(own, |normals| {

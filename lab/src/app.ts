@@ -5,13 +5,13 @@ import { Address } from "./address.ts";
 import type { Agreement, Catalog, Complete, Picture, Plane, Recording, Result, Step } from "./answers.ts";
 import { Engine, Refusal, Superseded, wordsOf, type Answer } from "./engine.ts";
 import { at, equal, isObject, put, type Json, type JsonObject } from "./json.ts";
-import { LAB, pack, read, stateOfB, unpack, write, type Lab, type Language, type Problem, type Situation } from "./link.ts";
+import { LAB, pack, stateOfB, write, type Lab, type Language, type Situation } from "./link.ts";
 import { OpenDialogs } from "./open-dialogs.ts";
+import { Opening } from "./opening.ts";
 import { OwnFiles } from "./own-files.ts";
 import { Playback } from "./playback.ts";
 import { missingModels, overlay } from "./states.ts";
-import { wantTally } from "./views/evaluations.ts";
-import { setLanguage, t } from "./words.ts";
+import { setLanguage } from "./words.ts";
 
 export type History = "replace" | "push";
 
@@ -29,6 +29,7 @@ const CHANNELS = ["depth", "surface", "object", "material", "normal", "steps", "
 export class App {
   engine: Engine;
   readonly address = new Address(this);
+  readonly opening = new Opening(this);
   readonly playback = new Playback(this);
   readonly dialogs = new OpenDialogs(this);
   readonly own = new OwnFiles(this);
@@ -131,7 +132,7 @@ export class App {
     this.emitters.push(listener);
   }
 
-  private emit(event: "ready" | "step" | "error") {
+  emit(event: "ready" | "step" | "error") {
     for (const emitter of this.emitters) emitter(event);
   }
 
@@ -272,130 +273,6 @@ export class App {
 
   async fragment(situation = this.situation): Promise<string> {
     return pack(write(situation, this.catalog!.defaults));
-  }
-
-  /** Reads a fragment and opens what it says. */
-  async openFragment(fragment: string) {
-    const catalog = this.catalog;
-    if (!catalog) return;
-    const { form, problems: packing } = await unpack(fragment);
-    if ([...form.keys()].length === 0) this.startForm().forEach((value, key) => form.append(key, value));
-    const exercise = form.has("models") ? undefined : catalog.exercises.find((e) => e.id === form.get("exercise"));
-    if (!exercise && !form.has("models")) form.append("models", JSON.stringify(this.startModels));
-
-    // A link that names an exercise and no model begins where the exercise does.
-    const start = exercise && overlay(catalog.defaults, exercise.start);
-    const { situation, problems } = read(form, catalog.defaults, start);
-    const exercises = catalog.exercises.map((e) => e.id);
-    if (situation.lab.exercise !== null && !exercises.includes(situation.lab.exercise)) {
-      situation.lab.exercise = null;
-      problems.push({ key: "exercise", what: "bad-value" });
-    }
-    const told = [...packing, ...problems].map((p) => tell(p));
-    told.push(...(await this.dropRefused(situation, form, start ?? put(catalog.defaults, "models", this.startModels))));
-    told.push(...(await this.dropOutside(situation)));
-    this.alert = told.length ? `${t("In the link")}: ${told.join("; ")}` : "";
-    setLanguage(situation.lab.lang ?? browserLanguage());
-
-    this.playback.isPlaying = false;
-    this.cross = null;
-    this.sameCamera = !Object.keys(situation.b).some((p) => p.startsWith("viewpoint"));
-    const { play } = situation.lab;
-    this.go(situation, "replace");
-    if (play) this.playback.play();
-    if (this.alert) this.emit("error");
-  }
-
-  start: { models?: string[]; files?: { name: string; url: string }[]; state?: JsonObject } = {};
-
-  private get startModels() {
-    return this.start.models?.length ? this.start.models : ["builtin:teapot"];
-  }
-
-  /** What an empty fragment stands for. */
-  private startForm(): URLSearchParams {
-    const defaults = this.catalog!.defaults;
-    const state = overlay(defaults, { models: this.startModels, ...this.start.state });
-    const size: JsonObject = this.start.state ? {} : { width: 640, height: 480 };
-    const settings = { ...(state["settings"] as JsonObject), ...size };
-    return write({ state: { ...state, settings }, b: {}, lab: LAB }, defaults);
-  }
-
-  /** Takes fields out of a situation until the engine accepts it; says which. `start` is the state without them. */
-  private async dropRefused(situation: Situation, form: URLSearchParams, start: JsonObject): Promise<string[]> {
-    this.missing = missingModels(situation.state, this.own.contents);
-    if (this.missing.length) return [];
-    const { state, b } = situation;
-    const told: string[] = [];
-    const isField = (key: string) => !Object.hasOwn(LAB, key) && !key.startsWith("b.") && at(state, key) !== undefined;
-    const fields = [...new Set(form.keys())].filter(isField);
-    const stateOfFields = (keys: string[]) => keys.reduce((sum, key) => put(sum, key, at(state, key) ?? null), start);
-    const kept = await this.acceptedKeys(fields, stateOfFields, (key, why) => told.push(key ? `\`${key}\`: ${why}` : why));
-    if (kept.length < fields.length) situation.state = stateOfFields(kept);
-
-    const fieldsOfB = Object.keys(b);
-    const stateOfB = (keys: string[]) => keys.reduce((sum, key) => put(sum, key, b[key] ?? null), situation.state);
-    const keptOfB = await this.acceptedKeys(fieldsOfB, stateOfB, (key, why) => told.push(key ? `\`b.${key}\`: ${why}` : why));
-    situation.b = Object.fromEntries(keptOfB.map((key) => [key, b[key] ?? null]));
-    return told;
-  }
-
-  /** The keys with which the engine accepts a state; tells why each of the others is left out. */
-  private async acceptedKeys(
-    keys: string[],
-    stateOf: (keys: string[]) => JsonObject,
-    tellRefused: (key: string | null, why: string) => void,
-  ): Promise<string[]> {
-    const reason = await this.reasonAgainst(stateOf(keys));
-    if (reason === null) return keys;
-    const guilty = await this.guiltyKey(keys, stateOf, reason);
-    tellRefused(guilty ?? null, reason);
-    if (guilty === undefined) return keys;
-    return this.acceptedKeys(keys.filter((key) => key !== guilty), stateOf, tellRefused);
-  }
-
-  /** The key that a refusal is about: without it the state is accepted, or refused for another reason. */
-  private async guiltyKey(keys: string[], stateOf: (keys: string[]) => JsonObject, reason: string): Promise<string | undefined> {
-    const which = async (list: string[], test: (key: string) => Promise<boolean>) => {
-      const results: boolean[] = [];
-      for (const key of list) results.push(await test(key));
-      return list.filter((_, i) => results[i]);
-    };
-    const suspects = await which(keys, async (key) => (await this.reasonAgainst(stateOf(keys.filter((k) => k !== key)))) !== reason);
-    if (suspects.length === 1) return suspects[0];
-
-    // Of fields that only together are refused, one is wrong by itself, or the reason speaks of it.
-    const isAlone = (key: string) => (k: string) => k === key || k === "models";
-    const alone = await which(suspects.length ? suspects : keys, async (key) => (await this.reasonAgainst(stateOf(keys.filter(isAlone(key))))) !== null);
-    const words = (key: string) => key.slice(key.lastIndexOf(".") + 1).replaceAll("-", " ");
-    return alone[0] ?? suspects.find((key) => reason.replaceAll("-", " ").includes(words(key))) ?? suspects.at(-1);
-  }
-
-  /** The Lab's own keys that do not go with the state: taken out, and told. */
-  private async dropOutside({ state, lab }: Situation): Promise<string[]> {
-    const told: string[] = [];
-    const { defaults } = this.catalog!;
-    const size = ["settings.width", "settings.height"].map((path) => Number(at(state, path)));
-    if (lab.pixel?.some((v, i) => v >= size[i]!)) {
-      told.push(tell({ key: "pixel", what: "outside" }));
-      lab.pixel = null;
-    }
-    const { second } = lab;
-    const viewpoint = defaults["viewpoint"];
-    if (!isObject(second) || !isObject(viewpoint)) return told;
-    const unknown = Object.keys(second).filter((field) => !Object.hasOwn(viewpoint, field));
-    told.push(...unknown.map((field) => tell({ key: `second.${field}`, what: "unknown-field" })));
-    const seen = put(put(defaults, "models", this.startModels), "viewpoint", overlay(viewpoint, second));
-    const reason = unknown.length ? null : await this.reasonAgainst(seen);
-    if (reason !== null) told.push(`\`second\`: ${reason}`);
-    if (unknown.length || reason !== null) lab.second = "off";
-    return told;
-  }
-
-  /** Why the engine refuses the state of a link, which has no lines; `null` if it does not. */
-  private async reasonAgainst(state: JsonObject): Promise<string | null> {
-    const refusal = await this.refusalOf(state);
-    return refusal && refusal.message.replace(/^state: (line \d+, column \d+: )?/, "");
   }
 
   /** Why the engine refuses a state, or a picture of it. */
@@ -603,7 +480,7 @@ export class App {
     // Sharpen what was drawn coarsely.
     if (this.lab.step === null && this.plane?.key !== this.key() && !this.isDragging) this.wantPicture();
     if (layout === "full" && page === "scene") this.answer("info", { want: "info", state });
-    if (layout === "full" && (page === "scene" || page === "shading") && !this.isDragging) wantTally(this);
+    if (layout === "full" && (page === "scene" || page === "shading") && !this.isDragging) this.answer("tally", { want: "tally", state });
     if (layout === "full" && page === "pipeline") {
       this.answer("stages", { want: "stages", state, ...(pixel ? { pixel } : {}) });
     }
@@ -760,12 +637,6 @@ export class App {
 
 function planeOf(picture: Picture, bytes: Uint8Array | undefined): Plane {
   return { bytes: bytes ?? new Uint8Array(), width: picture.width, height: picture.height };
-}
-
-function tell({ key, what }: Problem): string {
-  const words = { "unknown-field": "unknown field", "bad-value": "no value that can be", unreadable: "cannot be read", outside: "outside of the picture" } as const;
-  const short = key.length > 60 ? `${key.slice(0, 60)}…` : key;
-  return `\`${short}\`: ${t(words[what])}`;
 }
 
 export function browserLanguage(): Language {

@@ -13,6 +13,6 @@ export function talkToParent(app: App) {
   addEventListener("message", ({ data, source }: MessageEvent<unknown>) => {
     if (source !== parent || typeof data !== "object" || data === null) return;
     const { type, hash } = data as { type?: unknown; hash?: unknown };
-    if (type === "vitral-lab" && typeof hash === "string") void app.openFragment(hash.replace(/^#/, ""));
+    if (type === "vitral-lab" && typeof hash === "string") void app.opening.open(hash.replace(/^#/, ""));
   });
 }

@@ -53,9 +53,9 @@ async function start() {
   const { ok } = await app.engine.ask("catalog", { want: "catalog" });
   app.catalog = ok as unknown as Catalog;
   const given = document.getElementById("lab-start")?.textContent;
-  if (given) app.start = JSON.parse(given) as typeof app.start;
+  if (given) app.opening.start = JSON.parse(given) as typeof app.opening.start;
   try {
-    const files = await startFiles(app.start.files ?? []);
+    const files = await startFiles(app.opening.start.files ?? []);
     if (files.length) await takeStartFiles(app, files);
   } catch (e) {
     app.fail(e instanceof Error ? e.message : String(e));
@@ -65,10 +65,10 @@ async function start() {
   listenToEscape(app);
   acceptDrops(app);
   talkToParent(app);
-  await app.openFragment(location.hash.slice(1));
+  await app.opening.open(location.hash.slice(1));
   const reread = () => {
     if (app.address.isOwn()) return;
-    void app.openFragment(location.hash.slice(1));
+    void app.opening.open(location.hash.slice(1));
   };
   addEventListener("hashchange", reread);
   addEventListener("popstate", reread);
@@ -77,7 +77,7 @@ async function start() {
 /** Names the models that were served by the content of their files. */
 async function takeStartFiles(app: App, files: UserFile[]) {
   await app.own.give(files);
-  app.start.models = (app.start.models ?? []).map((m) => {
+  app.opening.start.models = (app.opening.start.models ?? []).map((m) => {
     const hash = m.startsWith("file:") ? app.own.hashes.get(m.slice(5)) : undefined;
     return hash === undefined ? m : `${m}#${hash}`;
   });

@@ -367,7 +367,7 @@ mod tests {
                 );
             }
         }
-        // The help of verbs without groups is no longer than that.
+        // Verbs without groups fit into the same number of lines.
         let mut command = args::command();
         command.build();
         for verb in

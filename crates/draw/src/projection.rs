@@ -156,7 +156,7 @@ pub(crate) fn project(
         placed.push(place(instance, weld, used, view, &mut clip, run));
     }
 
-    // Keep triangles and lines on the page, and clip those that cross its border.
+    // Keep triangles and lines on the page, and clip triangles and lines that cross its border.
     let mut projected = Projected { size, sources: sources(world, run), ..Projected::default() };
     let mut clipper = Clipper::new(&mut clip);
     for one in &placed {

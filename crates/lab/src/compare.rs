@@ -11,7 +11,7 @@ use vitral::{Channel, Error, Plane, Renderer, State};
 /// How many pixels that differ are named.
 const MOST_PIXELS: usize = 20;
 
-/// Pictures of each algorithm: the first builds what is built once, and is not timed.
+/// Pictures of each algorithm. The first one builds structures that all share, and is not timed.
 const FRAMES_EACH: usize = 2;
 
 /// Pictures that are timed at most.

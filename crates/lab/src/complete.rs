@@ -1,9 +1,9 @@
 //! The state with every field, and what it leads to: lights, materials, camera.
 
-use crate::answer::Answer;
+use crate::answer::{Answer, told};
 use serde_json::{Value, json};
 use vitral::internals::scene::lab::LabView;
-use vitral::{Camera, DMat4, DVec3, Error, Projection, Renderer, State};
+use vitral::{Camera, DMat4, DVec3, Projection, Renderer, State};
 
 /// Every setting with its value, the lights in force, the materials, and the camera.
 pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
@@ -18,13 +18,7 @@ pub(crate) fn complete(renderer: &mut Renderer, state: &State) -> Answer {
         Projection::Parallel { height } => (None, Some(height)),
         Projection::Window { .. } => (None, None),
     };
-    let refusal = renderer.check_settings().err().map(|error| {
-        let hint = match &error {
-            Error::Usage { hint, .. } | Error::Unsupported { hint, .. } => hint.as_str(),
-            _ => "",
-        };
-        json!({"message": error.to_string(), "hint": hint})
-    });
+    let refusal = renderer.check_settings().err().map(|error| told(&error));
     let answer = json!({
         "state": state,
         "refusal": refusal,

@@ -10,7 +10,7 @@ use vitral::explain::{FacetDepth, facets_over, spaces};
 use vitral::internals::render::trace::Step;
 use vitral::{DVec3, Error, Visibility};
 
-/// Facets that are listed of those that brute force compares.
+/// The most facets of brute force that are listed.
 const MOST_FACETS: usize = 2000;
 
 /// Pixels along the square.

@@ -4,7 +4,6 @@
 //!         light meets the viewer.
 
 use crate::answer::Answer;
-use crate::overview::clip_from_world;
 use serde_json::json;
 use vitral::{
     Channel, ColorSpace, DVec3, Error, Light, LightKind, LightTerm, Projection, Renderer,
@@ -43,7 +42,7 @@ pub(crate) fn highlight(renderer: &mut Renderer, number: usize) -> Answer {
 
     // Find the centroid of its brightness, and the pixel that mirrors best.
     let (mut weight, mut sum, mut best) = (0.0, [0.0; 2], (LEAST_COSINE, None));
-    let world_from_clip = clip_from_world(&camera, renderer).inverse();
+    let world_from_clip = renderer.view_transform(&camera).clip_from_world().inverse();
     let size = [color.width(), color.height()].map(f64::from);
     for (i, pixel) in color.data().iter().enumerate() {
         if depth.data()[i] == 0.0 {

@@ -78,7 +78,6 @@ use scene::Stage;
 use serde_json::json;
 use std::sync::Arc;
 use steps::{Asked, Recordings};
-use vitral::Error;
 
 /// Answers requests, and keeps what the next ones may need: files, the scene, recorded steps.
 #[derive(Default)]
@@ -106,15 +105,7 @@ impl Lab {
         match self.carry_out(&json, planes) {
             Ok((ok, planes)) => Message { json: json!({"ok": ok}).to_string(), planes },
             Err(error) => {
-                let hint = match &error {
-                    Error::Usage { hint, .. } | Error::Unsupported { hint, .. }
-                        if !hint.is_empty() =>
-                    {
-                        Some(hint)
-                    }
-                    _ => None,
-                };
-                let told = json!({"error": {"message": error.to_string(), "hint": hint}});
+                let told = json!({"error": answer::told(&error)});
                 Message { json: told.to_string(), planes: Vec::new() }
             }
         }

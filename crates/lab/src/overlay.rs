@@ -178,7 +178,7 @@ fn facet_shapes(recording: &Recording, ids: &[u32]) -> Result<Vec<Vec<[f32; 2]>>
     Ok(outlines.into_iter().map(single).collect())
 }
 
-/// A clip: what is inside, removed and outside, below the clipping polygon.
+/// A clip: the inside, removed and outside parts of polygons, below the clipping polygon.
 fn clip(svg: &mut String, facet: u32, outline: &[[f32; 2]], cut: &[CutPolygon]) {
     for polygon in cut {
         path(svg, &polygon.outside, "outside", polygon.facet);

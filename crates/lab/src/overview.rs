@@ -10,7 +10,7 @@ use std::fmt::Write;
 use vitral::explain::{Deciders, PartVolume, PathPart, explain, ray_path};
 use vitral::internals::math::{DVec4, func};
 use vitral::internals::render::trace::Step;
-use vitral::internals::scene::framing::{depth_range, frame_from};
+use vitral::internals::scene::framing::frame_from;
 use vitral::{
     Aabb, AreaShape, Camera, DMat4, DVec3, Error, Light, LightKind, Projection, Renderer, Settings,
     Viewpoint, Visibility,
@@ -25,7 +25,7 @@ const LOST_RAY: f64 = 0.5;
 /// Parts of an acceleration structure that are drawn.
 const MOST_PARTS: usize = 200;
 
-/// What is asked for besides the camera of the state.
+/// The second viewpoint, and the pixel and step to draw.
 pub(crate) struct Asked<'a> {
     /// From where the scene is seen; none: from beside the camera.
     pub(crate) second: Option<&'a Viewpoint>,
@@ -51,8 +51,8 @@ pub(crate) fn overview(renderer: &mut Renderer, asked: &Asked<'_>) -> Answer {
 
     // Draw lines where the other camera sees them.
     let [width, height] = [renderer.settings.picture.width, renderer.settings.picture.height];
-    let seen_by_camera = clip_from_world(&camera, renderer);
-    let clip_from_world = clip_from_world(&outside, renderer);
+    let seen_by_camera = renderer.view_transform(&camera).clip_from_world();
+    let clip_from_world = renderer.view_transform(&outside).clip_from_world();
     let screen = Screen { clip_from_world, size: [f64::from(width), f64::from(height)] };
     let mut svg =
         format!(r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">"#);
@@ -166,7 +166,7 @@ impl Rays {
             lines.push(("ray", eye, at, String::new()));
         }
 
-        // Draw the way to each light, until what is in its way or for some length.
+        // Draw a line to each light; to a directional one, a line of fixed length.
         for light in lights.iter().filter(|light| light.enabled) {
             let to = match light.kind {
                 LightKind::Point { position } | LightKind::Spot { position, .. } => position,
@@ -235,17 +235,10 @@ fn section(bounds: &Aabb, [a, b, c, d]: [f64; 4]) -> Vec<DVec3> {
     points
 }
 
-/// World to clip for what a camera sees of the scene.
-pub(crate) fn clip_from_world(camera: &Camera, renderer: &Renderer) -> DMat4 {
-    camera
-        .transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds))
-        .clip_from_world()
-}
-
 /// The corners of the view volume, in the order of a box's corners; the far ones come first, as
 /// depth is 0 there.
 fn view_volume(camera: &Camera, renderer: &Renderer) -> [DVec3; 8] {
-    let world_from_clip = clip_from_world(camera, renderer).inverse();
+    let world_from_clip = renderer.view_transform(camera).clip_from_world().inverse();
     let clip = Aabb { min: DVec3::new(-1.0, -1.0, 0.0), max: DVec3::ONE };
     clip.corners().map(|corner| world_from_clip.project_point3(corner))
 }

@@ -6,7 +6,6 @@
 
 use serde_json::{Value, json};
 use vitral::explain::Surface;
-use vitral::internals::scene::framing::depth_range;
 use vitral::{Camera, DVec3, Projection, Renderer};
 
 /// The two nearest points over a pixel, or the nearest one and another twice as far. `null` where
@@ -19,8 +18,7 @@ pub(crate) fn projector(
 ) -> Value {
     let Some(nearest) = surfaces.first() else { return Value::Null };
     let size = [renderer.settings.picture.width, renderer.settings.picture.height].map(f64::from);
-    let transform =
-        camera.transform(renderer.aspect(), depth_range(camera, &renderer.world().bounds));
+    let transform = renderer.view_transform(camera);
     let view_from_clip = transform.clip_from_view.inverse();
     let [x, y] = [0, 1].map(|k| (f64::from(pixel[k]) + 0.5) / size[k] * 2.0 - 1.0);
     let point = |depth: f64| view_from_clip.project_point3(DVec3::new(x, -y, depth));

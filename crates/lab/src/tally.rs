@@ -8,13 +8,11 @@ use crate::answer::Answer;
 use serde_json::json;
 use std::collections::BTreeSet;
 use vitral::bench::{Entrant, Task, measure};
+use vitral::internals::frame::Frame;
 use vitral::{Channel, Error, Renderer, Visibility};
 
-/// The surface id of the background.
-const NO_SURFACE: u32 = u32::MAX;
-
 /// Colours of the pixels that show a surface, and evaluations for flat, Gouraud's and Phong's
-/// shading of what is visible, all with one sample a pixel.
+/// shading of the visible facets, with one sample a pixel.
 pub(crate) fn tally(renderer: &mut Renderer) -> Answer {
     renderer.settings.picture.samples = 1;
     Channel::Surface.request(&mut renderer.settings.picture.channels);
@@ -22,12 +20,8 @@ pub(crate) fn tally(renderer: &mut Renderer) -> Answer {
 
     // Count the colours, and the pixels that show a surface.
     let picture = renderer.render_from(&camera)?;
-    let (Some(color), Some(surface)) = (&picture.frame.color, &picture.frame.surface) else {
-        return Err(Error::usage("this picture has no colours", ""));
-    };
-    let seen = color.data().iter().zip(surface.data()).filter(|(_, id)| **id != NO_SURFACE);
-    let colors: BTreeSet<[u8; 4]> = seen.clone().map(|(color, _)| *color).collect();
-    let pixels = seen.count();
+    let colors: BTreeSet<[u8; 4]> = surface_colors(&picture.frame).collect();
+    let pixels = surface_colors(&picture.frame).count();
     renderer.recycle(picture);
 
     // Find the facets that are visible, and their vertices.
@@ -59,4 +53,13 @@ pub(crate) fn tally(renderer: &mut Renderer) -> Answer {
         "evaluations": {"flat": facets.len(), "gouraud": vertices.len(), "phong": pixels},
     });
     Ok((answer, Vec::new()))
+}
+
+/// The colours of the pixels that show a surface, row by row; none of a picture without colours or
+/// surfaces.
+pub(crate) fn surface_colors(frame: &Frame) -> impl Iterator<Item = [u8; 4]> {
+    let colors = frame.color.iter().flat_map(|plane| plane.data());
+    let surfaces = frame.surface.iter().flat_map(|plane| plane.data());
+    let seen = colors.zip(surfaces).filter(|(_, surface)| **surface != Frame::BACKGROUND);
+    seen.map(|(color, _)| *color)
 }

@@ -22,6 +22,7 @@ import {
   spans,
 } from "../lights.ts";
 import { button, check, combo, group, spin } from "../parts/fields.ts";
+import { colorSpins } from "../parts/color-spins.ts";
 import { t, type Key } from "../words.ts";
 import { dialog } from "./dialog.ts";
 
@@ -32,12 +33,6 @@ const KIND_NAMES: Record<(typeof KINDS)[number], Key> = {
   spot: "Spot",
   area: "Area",
 };
-
-export const CHANNELS = [
-  ["red", "Red"],
-  ["green", "Green"],
-  ["blue", "Blue"],
-] as const;
 
 const lightsLeft = (app: App) => (app.get("lights") as Json[]).length;
 
@@ -83,13 +78,7 @@ function fields(app: App, light: JsonObject, number: number): unknown {
     const values = (light[field] as number[] | undefined) ?? [0, 0, 0];
     return group(
       t(name),
-      CHANNELS.map(([channel, label], i) =>
-        spin(t(label), values[i] ?? 0, (v) => setColor(app, number, field, i, v), {
-          name: t(`${name} ${channel}` as Key),
-          min: 0,
-          step: 0.05,
-        }),
-      ),
+      colorSpins(values, (channel) => t(`${name} ${channel}` as Key), (i, v) => setColor(app, number, field, i, v)),
       "in-row",
       name,
     );

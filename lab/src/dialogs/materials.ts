@@ -6,9 +6,9 @@ import type { JsonObject } from "../json.ts";
 import { propertyOf, setMaterial } from "../materials.ts";
 import { button, check, combo, group, spin } from "../parts/fields.ts";
 import type { Term } from "../parts/what.ts";
+import { colorSpins, wholeColor } from "../parts/color-spins.ts";
 import { t, type Key } from "../words.ts";
 import { dialog } from "./dialog.ts";
-import { CHANNELS } from "./lights.ts";
 
 export function materialsDialog(app: App): TemplateResult {
   return dialog(app, "materials", t("Materials"), content(app));
@@ -38,18 +38,7 @@ function fields(app: App, material: JsonObject): unknown {
     if (!Array.isArray(values)) return nothing;
     return group(
       t(legend),
-      CHANNELS.map(([channel, label], i) =>
-        spin(
-          t(label),
-          values[i] ?? 0,
-          (v) => {
-            const to = [...values];
-            to[i] = v;
-            set(property)(to.join(","));
-          },
-          { name: t(`${property} ${channel}` as Key), min: 0, step: 0.05 },
-        ),
-      ),
+      colorSpins(values, (channel) => t(`${property} ${channel}` as Key), wholeColor(values, (to) => set(property)(to.join(",")))),
       "in-row",
       property,
       property,

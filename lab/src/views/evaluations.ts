@@ -12,11 +12,6 @@ function tally(app: App): JsonObject | null {
   return app.answerTo("tally")?.ok ?? null;
 }
 
-/** Asks for the counts of the state, once nothing moves. */
-export function wantTally(app: App) {
-  if (app.catalog?.wants?.includes("tally")) app.answer("tally", { want: "tally", state: app.state });
-}
-
 /** The number of colours that surfaces have; `null` while it is not known. */
 export function surfaceColors(app: App): number | null {
   const colors = tally(app)?.["colors"];

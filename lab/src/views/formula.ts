@@ -3,34 +3,20 @@
 import { html, nothing, type TemplateResult } from "lit-html";
 import type { App } from "../app.ts";
 import { at, isObject, type JsonObject } from "../json.ts";
+import { colorSpins, wholeColor } from "../parts/color-spins.ts";
 import { spin } from "../parts/fields.ts";
 import { formula } from "../parts/markup.ts";
 import { valueText } from "../parts/numbers.ts";
 import { table, type Cell } from "../parts/table.ts";
 import { words } from "../parts/what.ts";
 import { t, translated } from "../words.ts";
-import { attenuationOf, lightNow, setAttenuation, setField } from "../lights.ts";
+import { attenuationOf, lightNow, setAttenuation, setColor } from "../lights.ts";
 import { propertyOf, setMaterial } from "../materials.ts";
-import { CHANNELS } from "../dialogs/lights.ts";
 import { explanationOf, objects } from "./pixel.ts";
 
-/** The three channels of a colour as numbers that can be set. */
-function colorSpins(symbol: string, values: readonly number[], set: (values: number[]) => void): TemplateResult {
-  return html`<div class="in-row">
-    ${CHANNELS.map(([, label], i) =>
-      spin(
-        t(label),
-        values[i] ?? 0,
-        (v) => {
-          const to = [...values];
-          to[i] = v;
-          set(to);
-        },
-        { name: t("Value of {0}", `${symbol} ${t(label).toLowerCase()}`), min: 0, step: 0.05 },
-      ),
-    )}
-  </div>`;
-}
+/** A colour of the formula as numbers that can be set. */
+const colorOf = (symbol: string, values: readonly number[], set: (i: number, value: number) => void) =>
+  html`<div class="in-row">${colorSpins(values, (_, label) => t("Value of {0}", `${symbol} ${t(label).toLowerCase()}`), set)}</div>`;
 
 /** Colours of a light by their symbols in the formula. */
 const LIGHT_COLORS = { Ia: "ambient", Id: "diffuse", Is: "specular" } as const;
@@ -42,7 +28,7 @@ function lightValue(app: App, symbol: string, number: number): Cell {
   const field = Object.hasOwn(LIGHT_COLORS, letter) ? LIGHT_COLORS[letter as keyof typeof LIGHT_COLORS] : null;
   if (light && field) {
     const values = (light[field] as number[] | undefined) ?? [0, 0, 0];
-    return colorSpins(`${letter} ${name}`, values, (to) => setField(app, number, field, to, to.join(",")));
+    return colorOf(`${letter} ${name}`, values, (i, v) => setColor(app, number, field, i, v));
   }
   if (light && letter === "f_att") {
     return html`<div class="in-row">
@@ -70,7 +56,8 @@ function place(app: App, row: JsonObject): Cell {
     const material = app.complete?.value.materials.find((m) => String(m["name"] ?? "") === name);
     const value = material && propertyOf(material, property);
     if (name !== null && Array.isArray(value)) {
-      return colorSpins(symbol, value.map(Number), (to) => setMaterial(app, name, property, to.join(",")));
+      const values = value.map(Number);
+      return colorOf(symbol, values, wholeColor(values, (to) => setMaterial(app, name, property, to.join(","))));
     }
     if (name !== null && typeof value === "number") {
       return spin(symbol, value, (v) => setMaterial(app, name, property, String(v)), { name: t("Value of {0}", symbol), min: 0, max: 1000 });
@@ -79,7 +66,10 @@ function place(app: App, row: JsonObject): Cell {
   }
   const value = at(app.state, setting);
   if (typeof value === "number") return spin(symbol, value, (v) => app.set({ [setting]: v }), { name: t("Value of {0}", symbol) });
-  if (Array.isArray(value) && value.length === 3) return colorSpins(symbol, value.map(Number), (to) => app.set({ [setting]: to }));
+  if (Array.isArray(value) && value.length === 3) {
+    const values = value.map(Number);
+    return colorOf(symbol, values, wholeColor(values, (to) => app.set({ [setting]: to })));
+  }
   return "";
 }
 

@@ -3,7 +3,7 @@
 //! Viewers mix each region with the colours painted already, in proportion to how much of a pixel
 //! it covers. Where two regions only touch, the paper shines through between them: half of it
 //! passes the first, and half of that the second. A region that reaches a little under its
-//! neighbour covers such pixels whole, and the neighbour mixes with it alone.
+//! neighbour covers pixels of the border whole, and the neighbour mixes with that region only.
 //!
 //! A part reaches under the visible parts of all triangles round its corners, and of those whose
 //! outlines cut it, or that it cuts. Clear parts reach nowhere: parts under a clear one show.

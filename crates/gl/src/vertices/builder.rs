@@ -52,7 +52,7 @@ pub(crate) struct Builder {
     moved: bool,
     /// All that is gathered: a batch that somebody else holds, too. Nothing is in `batch` then.
     lone: Option<Arc<VertexBatch>>,
-    /// Batches being drawn: their memory serves again afterwards.
+    /// Batches being drawn. The memory of a drawn batch is reused for a later one.
     pub(super) drawn: Vec<Arc<VertexBatch>>,
     /// Empty vectors with memory, for the attributes of `batch`.
     spare: VertexBatch,

@@ -1,13 +1,11 @@
 //! An exercise, and what a student did.
 
+use crate::tally::surface_colors;
 use std::collections::BTreeSet;
 use vitral::explain::{Deciders, Explanation, explain};
 use vitral::internals::render::stats::Stats;
 use vitral::internals::render::trace::Step;
 use vitral::{Error, Light, Picture, Renderer, State};
-
-/// The surface id of the background.
-const NO_SURFACE: u32 = u32::MAX;
 
 /// Tells the conditions that are not met yet; none if the exercise is done.
 pub(super) type Check = fn(&mut Solution<'_>) -> Result<Vec<String>, Error>;
@@ -66,10 +64,7 @@ impl Solution<'_> {
     /// How many colours surfaces have.
     pub(super) fn colors(&mut self) -> Result<usize, Error> {
         let frame = self.picture()?.frame;
-        let colors = frame.color.iter().flat_map(|plane| plane.data());
-        let surfaces = frame.surface.iter().flat_map(|plane| plane.data());
-        let seen = colors.zip(surfaces).filter(|(_, surface)| **surface != NO_SURFACE);
-        Ok(seen.map(|(color, _)| color).collect::<BTreeSet<_>>().len())
+        Ok(surface_colors(&frame).collect::<BTreeSet<_>>().len())
     }
 
     /// The surface at each pixel.

@@ -20,6 +20,7 @@ mod pending;
 mod plan;
 mod plane;
 mod project;
+mod repeated_textures;
 mod sample;
 mod shade;
 mod soft;

@@ -9,12 +9,12 @@ use super::fragment::{ColorTile, FragmentOps, TilePlanes};
 use super::pending::{PendingDepth, PendingKind, pendable};
 use super::plan::{Plan, PlanItem, plan, rounds};
 use super::plane::{ColorPlane, DepthBuffer, Plane, PlaneTile, StencilPlane};
+use super::repeated_textures::{TextureUse, repeated_uses, texture_uses};
 use super::sample::PackedTexture;
 use super::shade::{Layout, TexelCache};
 use super::spare::{Assembly, SparePrimitives};
-use super::state::{Clamping, EnvironmentMode, FragmentState};
+use super::state::{Clamping, FragmentState};
 use super::strips::{TileCopy, cut, rows};
-use super::texture::Texture;
 use super::tile::TileRun;
 use crate::geometry::TileLists;
 use crate::screen::Screen;
@@ -287,7 +287,7 @@ impl Runner {
         }
 
         // Lock the planes that the pass samples, and find the textures that are shown repeatedly.
-        let again = shown_again(&pass.commands);
+        let again = repeated_uses(&pass.commands);
         let sampled = sampled_planes(&pass.commands);
         let (sampled, mut depth) = hold(&sampled, pass.target.depth.as_ref());
         let rounds = rounds(&order);
@@ -422,7 +422,7 @@ impl Runner {
         pass: &'a Pass,
         plans: &[Plan],
         (first, jobs): (usize, &'a [Primitives]),
-        (sampled, again): (&'a Held<'a>, &[Shown]),
+        (sampled, again): (&'a Held<'a>, &[TextureUse]),
     ) -> Item<'a> {
         let samples = pass.target.samples;
 
@@ -586,7 +586,7 @@ fn draw_context<'a>(
     geometry: &'a dyn Geometry,
     state: &'a FragmentState,
     pass: &Pass,
-    (sampled, again): (&'a Held<'a>, &[Shown]),
+    (sampled, again): (&'a Held<'a>, &[TextureUse]),
 ) -> DrawContext<'a> {
     // Borrow the depth planes that the draw samples.
     let mut planes = [None; UNITS];
@@ -604,14 +604,14 @@ fn draw_context<'a>(
             Some((unit.index, PackedTexture::new(&unit.texture, planes[unit.index % UNITS])?))
         })
         .collect();
-    let is_flat = |shown: &Shown| {
+    let is_flat = |shown: &TextureUse| {
         plain
             .iter()
             .any(|(unit, common)| *unit == shown.unit && matches!(common, PackedTexture::Flat(_)))
     };
 
     // Find the texture whose colours are kept for repeated draws.
-    let again = textures_of(geometry, state).find(|shown| is_flat(shown) && again.contains(shown));
+    let again = texture_uses(geometry, state).find(|shown| is_flat(shown) && again.contains(shown));
 
     // Decide which fragment operations need colours.
     let samples = pass.target.samples;
@@ -635,43 +635,6 @@ fn draw_context<'a>(
         plain,
         planes,
     }
-}
-
-/// A draw's vertices with a texture of its.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Shown {
-    vertices: usize,
-    texture: *const Texture,
-    unit: usize,
-}
-
-/// What [`shown_again`] counts of a draw: nothing where textures are not only multiplied with each
-/// other.
-fn textures_of(geometry: &dyn Geometry, state: &FragmentState) -> impl Iterator<Item = Shown> {
-    let vertices = geometry.vertex_source();
-    let multiplied = state.units.iter().all(|unit| unit.mode == EnvironmentMode::Modulate);
-    state.units.iter().filter(move |_| multiplied).map(move |unit| Shown {
-        vertices,
-        texture: Arc::as_ptr(&unit.texture),
-        unit: unit.index,
-    })
-}
-
-/// Which vertices are drawn with the same texture more than once, colours being wanted.
-fn shown_again(commands: &[Command]) -> Vec<Shown> {
-    let mut all = Vec::new();
-    for command in commands {
-        if let Command::Draw(geometry, state) = command
-            && state.masked != [true; 4]
-        {
-            all.extend(textures_of(&**geometry, state));
-        }
-    }
-    all.sort_unstable();
-    let mut again: Vec<Shown> =
-        all.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
-    again.dedup();
-    again
 }
 
 /// The depth planes that are held for the whole pass, each once, in the order of their addresses:
